@@ -13,9 +13,9 @@
 #include "client/gcode/machine/machine_limits.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/work_limit.h"
-#include "client/gcode/write/layer_writer.h"
 #include "client/input/input_job.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
 

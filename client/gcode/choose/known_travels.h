@@ -10,9 +10,9 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/choose/order_repair.h"
+#include "client/gcode/link/travel_totals.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/link/travel_totals.h"
 
 namespace traverse::gcode {
 

@@ -15,6 +15,7 @@
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/choose/object_orders.h"
 #include "client/gcode/choose/rested_row.h"
+#include "client/gcode/hidden/hidden_moves.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/stacked_islands.h"
 

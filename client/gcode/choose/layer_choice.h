@@ -20,10 +20,13 @@
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/order_polish.h"
 #include "client/gcode/measure/print_totals.h"
+#include "client/gcode/model/part_start.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/policy.h"
-#include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode {
+
+class HiddenMoves;
 
 // One order for each layer of a file; empty for the file's own order.
 using FileOrder = std::vector<LayerOrder>;

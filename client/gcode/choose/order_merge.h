@@ -17,8 +17,8 @@
 #include <limits>
 #include <vector>
 
-#include "client/gcode/model/placed_path.h"
 #include "client/gcode/link/travel_totals.h"
+#include "client/gcode/model/placed_path.h"
 
 namespace traverse::gcode {
 

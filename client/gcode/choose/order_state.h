@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "client/gcode/choose/order_merge.h"
+#include "client/gcode/link/travel_totals.h"
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
-#include "client/gcode/link/travel_totals.h"
 
 namespace traverse::gcode {
 

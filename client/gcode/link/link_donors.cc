@@ -76,6 +76,12 @@ bool LinkDonors::LacksLift(uint32_t block) const {
   return found != lifts_.end() && found->second > 0;
 }
 
+bool LinkDonors::IsOwnExample(uint32_t block, bool retracts, bool wipes) const {
+  const int link = file_.blocks[block].link;
+  return MayFollow(block) && !LacksLift(block) && ((link & kLinkRetracts) != 0) == retracts &&
+         ((link & kLinkWipes) != 0 || !wipes);
+}
+
 std::optional<uint32_t> LinkDonors::Find(uint32_t block, bool retracts, bool wipes) const {
   const Kind kind{file_.blocks[block].mode, retracts};
   if (wipes) {

@@ -24,6 +24,10 @@ class LinkDonors {
   // links, one that lifts. Unset if there is none.
   std::optional<uint32_t> Find(uint32_t block, bool retracts, bool wipes = false) const;
 
+  // Whether new travel to `block` that retracts or not, and wipes if `wipes`, is like the travel
+  // that leads there in the file, and not like another link.
+  bool IsOwnExample(uint32_t block, bool retracts, bool wipes) const;
+
   // A layer's travel may have speeds of its own: the link of the layer of `block` that shows them
   // when `link` is the template. One that retracts as `link` does, if there is any. Unset if `link`
   // is of that layer, or the layer has no travel to learn from.

@@ -91,31 +91,35 @@ bool LayerLinks::IsBlocked(const PlannedTravel& travel) const {
   return !room_->IsClear(at, z_mm, travel.to, z_mm);
 }
 
-// The path before is left as it is in the file, if it retracts there; else the travel is like that
-// to the path behind it, or like another (LinkComposer).
+// The path before is left as it is in the file, if it retracts there, and the next one is reached
+// as the travel does that this is like (LinkComposer).
 double LayerLinks::RetractionSeconds(const Placement& from, const Placement& to, double mm,
                                      const LinkForm& form, const TravelModel& model) const {
   const auto of = [&](uint32_t block) {
     const bool here = layer_.first_block < block && block < layer_.end_block;
     const size_t place = here ? block - layer_.first_block : 0;
-    return here && place < model.added_seconds.size() ? model.added_seconds[place] : 0.F;
+    return here && place < model.added.size() ? model.added[place] : AddedSeconds();
   };
-  if (form.given) return of(to.block) > 0 ? of(to.block) : model.retraction_seconds;
-  uint32_t like_to = to.block;
-  if (!(of(like_to) > 0)) like_to = donors_.Find(to.block, true, form.wipes).value_or(like_to);
-  const uint32_t left = from.block + 1;
-  const uint32_t like = of(left) > 0 ? left : like_to;
-  if (!(of(like) > 0)) return model.retraction_seconds;
-  if (!(model.slope > 0)) return of(like);
+  uint32_t like = to.block;
+  if (!form.given && !donors_.IsOwnExample(like, true, form.wipes)) {
+    like = donors_.Find(like, true, file_.WipedBehind(from.block)).value_or(like);
+  }
+  const uint32_t left = form.given ? like : from.block + 1;
+  const AddedSeconds leaving = of(left).sum() > 0 ? of(left) : of(like);
+  const AddedSeconds arriving = of(like).sum() > 0 ? of(like) : leaving;
+  if (!(arriving.sum() > 0)) return model.retraction_seconds;
+  const double seconds = leaving.leaving + arriving.arriving;
+  if (form.given || !(model.slope > 0)) return seconds;
   // A slope rises as long as the travel does, and is not made lower for a shorter one.
   const auto lift_of = [&](uint32_t block) {
     const Block& link = file_.blocks[block];
     return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();
   };
-  const double lift = std::max(lift_of(like), lift_of(like_to));
+  const double lift = std::max(lift_of(of(left).sum() > 0 ? left : like), lift_of(like));
   const double highest = std::max(ToDouble(donors_.highest_lift()), lift);
   const double rises = std::clamp(model.slope * mm, lift, highest);
-  return of(like) + (rises - lift_of(like)) * model.descent_seconds_per_mm;
+  const uint32_t lowered = of(like).sum() > 0 ? like : left;
+  return seconds + (rises - lift_of(lowered)) * model.descent_seconds_per_mm;
 }
 
 }  // namespace traverse::gcode

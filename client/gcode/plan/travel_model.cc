@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "client/gcode/machine/motion_planner.h"
@@ -51,6 +52,7 @@ struct LayerTravel {
   Additions between_paths;
   Additions at_marks;                 // where scripts may change tools, prime and wait as well
   std::vector<uint32_t> between;      // [of between_paths] the block in the layer that it leads to
+  Retractions arriving;               // [of between_paths] its part behind the travel
   double slope = 0;                   // of the last move that rises on its way
   double descent_seconds_per_mm = 0;  // of the last one of Z alone
 };
@@ -95,18 +97,27 @@ class TravelLearner {
     PrintMeter all(file_.profile, dynamics, nullptr);
     PrintMeter travel(file_.profile, dynamics, nullptr);
     PrintMeter flowing(file_.profile, dynamics, nullptr);  // without stops
+    std::optional<PrintMeter> behind;                      // the last retracted travel
     for (Step step; interpreter.Next(step);) {
       const bool travels = step.kind == StepKind::kTravel || step.kind == StepKind::kSlot;
       if (retracts) all.Follow(step, interpreter);
       if (retracts && travels) travel.Follow(step, interpreter);
       if (retracts && travels) flowing.Follow(step, interpreter);
       if (StandsStill(step)) travel.Stop();
+      if (step.kind == StepKind::kTravel) {
+        if (step.retracted) behind.emplace(file_.profile, dynamics, nullptr);
+      } else if (behind) {
+        behind->Follow(step, interpreter);
+      }
       LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;
     const bool at_mark = (block.link & kLinkSplits) != 0;
     Additions& added = at_mark ? learnt.at_marks : learnt.between_paths;
-    if (!at_mark) learnt.between.push_back(b - first_block);
+    if (!at_mark) {
+      learnt.between.push_back(b - first_block);
+      learnt.arriving.push_back(behind ? behind->Finish().seconds : 0);
+    }
     const double seconds = all.Finish().seconds;
     added.alone.push_back(seconds - travel.Finish().seconds);
     added.altogether.push_back(seconds - flowing.Finish().seconds);
@@ -134,12 +145,15 @@ class TravelLearner {
   std::map<uint32_t, Dynamics> dynamics_;  // by state
 };
 
-std::vector<float> AddedSeconds(const Layer& layer, const LayerTravel& learnt) {
+std::vector<AddedSeconds> AddedIn(const Layer& layer, const LayerTravel& learnt) {
   const Retractions& seconds = learnt.between_paths.alone;
-  std::vector<float> added(layer.end_block - layer.first_block);
+  std::vector<AddedSeconds> added(layer.end_block - layer.first_block);
   const double most = seconds.empty() ? 0 : MostSeconds(seconds);
   for (size_t i = 0; i < seconds.size(); ++i) {
-    if (seconds[i] <= most) added[learnt.between[i]] = static_cast<float>(seconds[i]);
+    if (seconds[i] > most) continue;
+    const double arriving = learnt.arriving[i];
+    added[learnt.between[i]] = {static_cast<float>(seconds[i] - arriving),
+                                static_cast<float>(arriving)};
   }
   return added;
 }
@@ -174,7 +188,7 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
     model.slope = rises ? learnt.slope : 0;
     model.descent_seconds_per_mm = rises ? learnt.descent_seconds_per_mm : 0;
     models.push_back(model);
-    models.back().added_seconds = AddedSeconds(file.layers[layer], learnt);
+    models.back().added = AddedIn(file.layers[layer], learnt);
   }
   for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
   return models;

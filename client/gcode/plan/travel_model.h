@@ -12,6 +12,15 @@
 
 namespace traverse::gcode {
 
+// What the retraction in a link adds to its travel: ahead of it, to pull back, wipe and lift, and
+// behind it, to lower and prime. 0 if there is none, or it tells nothing of others.
+struct AddedSeconds {
+  float leaving = 0;
+  float arriving = 0;
+
+  float sum() const { return leaving + arriving; }
+};
+
 // The travel of one layer.
 struct TravelModel {
   double speed_mm_s = 150;
@@ -25,9 +34,8 @@ struct TravelModel {
   double slope = 0;
   double descent_seconds_per_mm = 0;
 
-  // [block of the layer] what the retraction in the link before it adds, as retraction_seconds is
-  // the mean of; 0 if there is none, or it tells nothing of others.
-  std::vector<float> added_seconds = {};
+  // [block of the layer] of the link before it; retraction_seconds is the mean of their sums.
+  std::vector<AddedSeconds> added = {};
 };
 
 // [layer]. Speed and acceleration are those of most of the layer's travel. The times are the means

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
 
 namespace traverse::gcode {

@@ -9,6 +9,7 @@
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
+#include "client/gcode/write/layer_writer.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/write/purged.h"
 

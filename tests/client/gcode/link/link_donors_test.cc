@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "client/gcode/link/link.h"
+#include "client/gcode/write/layer_writer.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

@@ -148,12 +148,24 @@ TEST(LearnTravel, KnowsWhatEachRetractionAdds) {
 
   const TravelModel model = LearnTravel(*file, 1.5)[0];
 
-  ASSERT_EQ(model.added_seconds.size(), 4u);
-  EXPECT_EQ(model.added_seconds[0], 0);
-  EXPECT_GT(model.added_seconds[1], 0);
-  EXPECT_EQ(model.added_seconds[2], 0);
-  EXPECT_GT(model.added_seconds[3], model.added_seconds[1] + .04);
-  EXPECT_NEAR(model.added_seconds[1] + model.added_seconds[3], 2 * model.retraction_seconds, 1e-6);
+  ASSERT_EQ(model.added.size(), 4u);
+  EXPECT_EQ(model.added[0].sum(), 0);
+  EXPECT_GT(model.added[1].sum(), 0);
+  EXPECT_EQ(model.added[2].sum(), 0);
+  EXPECT_GT(model.added[3].sum(), model.added[1].sum() + .04);
+  EXPECT_NEAR(model.added[1].sum() + model.added[3].sum(), 2 * model.retraction_seconds, 1e-6);
+}
+
+// A prime ten times as slow as its retraction: 0.23 s behind the travel, and the rest ahead of it.
+TEST(LearnTravel, TellsWhatIsAddedAheadOfTheTravelFromWhatIsBehindIt) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Add("G1 E-.8 F2100").Go(0, 10).Add("G1 E.8 F210").Infill(10, 10);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+
+  const AddedSeconds added = LearnTravel(*file, 1.5)[0].added[1];
+
+  EXPECT_NEAR(added.leaving, .8 / 35, .03);
+  EXPECT_NEAR(added.arriving, .8 / 3.5, .03);
 }
 
 TEST(LearnTravel, KnowsHowHeadsRiseOnTheirTravel) {

@@ -12,6 +12,7 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/rewrite.h"
+#include "client/gcode/write/layer_writer.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/rewrite.h"
+#include "client/gcode/write/layer_writer.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/write/purged.h"

@@ -22,8 +22,8 @@ using testing::Sketch;
 constexpr int kHeights[] = {0, 70, 10, 60, 20, 50, 30, 40};
 
 // Lines of 10 mm one above the other. The head rises on the way to them by `slope`, and the line at
-// `wiped` is wiped.
-std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1) {
+// `wiped` is wiped; behind that at `slow` the prime is slow.
+std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1, int slow = -1) {
   Sketch sketch;
   double x = 0;
   double y = 0;
@@ -37,7 +37,7 @@ std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1) {
     const std::string rise = slope > 0 ? absl::StrCat(" Z", .2 + slope * mm) : "";
     sketch.Add(absl::StrCat("G1 X0 Y", height, rise, " F9000"));
     if (slope > 0) sketch.Add("G1 Z.2 F300");
-    sketch.Add("G1 E.8 F2100").Infill(10, height);
+    sketch.Add(slow >= 0 && y == slow ? "G1 E.8 F210" : "G1 E.8 F2100").Infill(10, height);
     x = 10;
     y = height;
   }
@@ -99,6 +99,15 @@ TEST(Retractions, CostWhatTheWipeOfThePathBeforeDoes) {
   const Saved unwiped = SavedUpwards(*Lines(0));
 
   EXPECT_GT(saved.written, unwiped.written + .05);
+  EXPECT_NEAR(saved.estimated, saved.written, .005);
+}
+
+// However it is come to, a path is primed as in the file: behind the highest line slowly.
+TEST(Retractions, CostWhatThePrimeOfThePathBehindDoes) {
+  const Saved saved = SavedUpwards(*Lines(0, -1, 70));
+  const Saved alike = SavedUpwards(*Lines(0));
+
+  EXPECT_NEAR(saved.written, alike.written, .005);
   EXPECT_NEAR(saved.estimated, saved.written, .005);
 }
 
