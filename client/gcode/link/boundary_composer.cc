@@ -25,7 +25,7 @@ void LinkComposer::ComposeBoundary() {
   const bool as_given = LeavesAsGiven(boundary);
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> like;
-  if (form_.retracts && !link.arrives_retracted && link.arrival >= 0) like = LikeWhat();
+  if (form_.retracts && !link.arrives_retracted && link.arrival >= 0) like = LikeWhat(true);
   // But not before the label of an object, if it comes at the same height.
   const bool behind_label = like && LabelsBeforeTravel(link);
   if (like && !behind_label) {

@@ -63,19 +63,18 @@ void LinkComposer::KeepGiven() {
   link_.Keep({from.end, to.begin, StartBehind(file_, from), behind, form_.without_progress});
 }
 
-Link LinkComposer::LikeWhat() const {
+Link LinkComposer::LikeWhat(bool retracts) const {
   const uint32_t to = to_.placement().block;
-  if (donors_.MayFollow(to) && !donors_.LacksLift(to)) {
+  if (donors_.IsOwnExample(to, retracts, form_.wipes)) {
     Link own = ReadLink(file_, to);
-    const bool fits = own.retracts() == form_.retracts && (own.wipes || !form_.wipes);
-    if (fits && own.arrival >= 0) return own;
+    if (own.arrival >= 0) return own;
   }
-  for (const bool retracts : {form_.retracts, !form_.retracts}) {
+  for (const bool pulls : {retracts, !retracts}) {
     // Where no travel of the file is open, this is retracted, and so the path is wiped.
     const bool wipes = file_.WipedBehind(from_.placement().block);
     // Where there is no way to go, there is none to retract for.
-    if (retracts && !form_.retracts && to_.first().SameXy(link_.at())) return {};
-    const std::optional<uint32_t> donor = donors_.Find(to, retracts, retracts && wipes);
+    if (pulls && !retracts && to_.first().SameXy(link_.at())) return {};
+    const std::optional<uint32_t> donor = donors_.Find(to, pulls, pulls && wipes);
     if (!donor) continue;
     Link like = ReadLink(file_, *donor);
     if (like.arrival < 0) continue;
@@ -88,10 +87,9 @@ Link LinkComposer::LikeWhat() const {
   return ReadLink(file_, to);
 }
 
-// As the file's own open travel; where it has none, as its retracted travel: of both the travel
-// alone.
+// What it would be like if it were seen: of that the travel alone.
 Link LinkComposer::LikeHidden() const {
-  const Link like = LikeWhat();
+  const Link like = LikeWhat(true);
   Link form;
   form.travel_state = like.travel_state;
   form.z_before = form.z_behind = form.top = to_.first().z;
@@ -103,7 +101,7 @@ Link LinkComposer::LikeHidden() const {
 }
 
 void LinkComposer::ComposePlain() {
-  const Link like = form_.hidden ? LikeHidden() : LikeWhat();
+  const Link like = form_.hidden ? LikeHidden() : LikeWhat(form_.retracts);
   SetTravelState(like);
   const Link left = Depart(like);
   const Link rise = Stretched(left.lift > like.lift ? left : like,

@@ -46,7 +46,7 @@ class LinkComposer {
   void ComposeBoundaryStep(const Link& link, size_t i);
   void TravelToBoundary(const Link& link);
 
-  Link LikeWhat() const;
+  Link LikeWhat(bool retracts) const;
   Link LikeHidden() const;
   std::optional<Link> OwnDeparture(const Link& like) const;
 

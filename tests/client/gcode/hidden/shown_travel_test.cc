@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "client/gcode/link/link_looks.h"
+#include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/read_text.h"
@@ -244,6 +246,27 @@ TEST(ShownTravel, OfLayersOfOnePathAndOfManyIslands) {
     if (i == 0) continue;
     EXPECT_EQ(Name(GoesTo(fast, 1, {x, y})), "retracted");
   }
+}
+
+// Slicers may go short ways slowly, and short ways alone are open in the file.
+TEST(ShownTravel, WhatIsHiddenGoesAsItWouldIfItWereSeen) {
+  Stack stack;
+  stack.Add("M204 S2000\n");
+  for (const double z : {.2, .4, .6, .8, 1.}) {
+    stack.Layer(z).Wall(0, 0, 20).Line(2, 4, 16).Line(18.4, 4, 1).Line(2, 10, 16).Line(2, 16, 16);
+  }
+  const std::string text = absl::StrReplaceAll(
+      stack.Text(),
+      {{Stack::Retracted(18.4, 4), "M204 S500\n" + Stack::Open(18.4, 4) + "M204 S2000\n"}});
+  ASSERT_NE(text, stack.Text());
+
+  const std::string fast = Fast(text);
+
+  EXPECT_EQ(GoesTo(text, 2, kSecondLine), Goes::kRetracted);
+  EXPECT_EQ(GoesTo(fast, 2, kSecondLine), Goes::kOpen);
+  const std::vector<std::string> in_file = absl::StrSplit(text, "M204 S500\n");
+  const std::vector<std::string> in_fast = absl::StrSplit(fast, "M204 S500\n");
+  EXPECT_EQ(in_fast.size(), in_file.size()) << fast;
 }
 
 }  // namespace
