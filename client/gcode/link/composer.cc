@@ -244,16 +244,9 @@ void LinkComposer::LiftAs(const LinkStep& step, Decimal z) {
 
 // The bends of the travel to the next path, and its end.
 std::vector<Position> LinkComposer::BendsToNext() const {
-  const MachineState& machine = link_.machine();
   std::vector<Position> travel;
-  for (const Vertex& bend : form_.hidden_bends) {
-    travel.push_back(InWords(bend, machine.UnitMm()));
-  }
-  if (form_.detours != nullptr) {
-    for (const Vertex bend :
-         form_.detours->Around(machine.InMm(machine.at), machine.InMm(to_.first()))) {
-      travel.push_back(InWords(bend, machine.UnitMm()));
-    }
+  for (const Vertex& bend : form_.travel.via) {
+    travel.push_back(InWords(bend, link_.machine().UnitMm()));
   }
   travel.push_back(to_.first());
   return travel;

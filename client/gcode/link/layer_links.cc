@@ -36,7 +36,6 @@ LinkForm LayerLinks::FormOf(const Placement& from, Vertex end, const Placement& 
   if ((file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0) form.boundary = place;
   form.given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                (!form.boundary || to.block == place);
-  form.detours = rules_.detours();
   DecideTravel(from, end, to, place, form);
   if (form.given) form.retracts = (file_.blocks[to.block].link & kLinkRetracts) != 0;
   return form;
@@ -47,10 +46,12 @@ void LayerLinks::Hide(const Placement& from, const Placement& to, bool bends,
                       LinkForm& form) const {
   if (!hides_ || !form.retracts || form.boundary || from.block < layer_.first_block) return;
   if (rules_.Hides(departures_.Open(from), departures_.Begin(to), FeatureOf(to))) {
-    return form.Hide({});
+    return form.Hide(OpenTravel(from, to));
   }
   std::vector<Vertex> around = bends ? HiddenBends(from, to) : std::vector<Vertex>();
-  if (!around.empty()) form.Hide(std::move(around));
+  if (around.empty()) return;
+  form.Hide(OpenTravel(from, to));
+  form.travel.via = std::move(around);
 }
 
 std::vector<Vertex> LayerLinks::HiddenBends(const Placement& from, const Placement& to) const {
@@ -107,19 +108,9 @@ void LayerLinks::DecideTravel(const Placement& from, Vertex end, const Placement
   if (!left || behind_fixed) return;
   form.departure = departure;
   behind.mm += departure->departs ? Distance(end, at) : departure->mm;
-  behind.retracts = form.retracts;
-  if (!departure->wipes) {
-    behind.stands = form.retracts;
-    behind.from = end;
-    behind.via.insert(behind.via.begin(), at);
-  } else if (const std::optional<Vertex> aside = departures_.ShortMove(from)) {
-    // As the planner of travel sees it, which leaves out the wipe between the two.
-    behind.stands = true;
-    const Vertex before = {aside->x - end.x, aside->y - end.y};
-    behind.mm += std::hypot(before.x, before.y);
-    behind.from = {at.x - before.x, at.y - before.y};
-    behind.via.insert(behind.via.begin(), at);
-  }
+  const std::optional<Vertex> aside = departure->wipes ? departures_.ShortMove(from) : at;
+  if (aside) behind.ahead = {aside->x - end.x, aside->y - end.y};
+  if (departure->wipes) behind.mm += std::hypot(behind.ahead.x, behind.ahead.y);
   travel = std::move(behind);
 }
 

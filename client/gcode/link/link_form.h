@@ -6,9 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "client/gcode/plan/detour.h"
 #include "client/gcode/plan/travel_rules.h"
 
 namespace traverse::gcode {
@@ -40,23 +38,19 @@ struct LinkForm {
   // are written. In the file it stands before block `boundary`.
   std::optional<uint32_t> boundary;
 
-  // Detours around visible walls, if travel makes them; null: travel is straight.
-  const Detours* detours = nullptr;
-
-  // Nobody sees the travel: it goes straight, or by these bends, without a retraction, a lift and a
-  // wipe.
+  // Nobody sees the travel: it does without a retraction, a lift and a wipe.
   bool hidden = false;
-  std::vector<Vertex> hidden_bends = {};
 
   // Leave out lines of progress of what is copied unchanged.
   bool without_progress = false;
 
-  void Hide(std::vector<Vertex> bends) {
+  // `open`: how it leads then.
+  void Hide(PlannedTravel open) {
     hidden = true;
-    hidden_bends = std::move(bends);
+    travel = std::move(open);
+    departure = nullptr;
     retracts = wipes = departs = false;
     turned_departure.reset();
-    detours = nullptr;
   }
 };
 

@@ -17,7 +17,6 @@ TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, con
   const TravelJoints joints = JointsOf(from, to, form.wipes || (form.given && !form.hidden));
   TravelTotals totals;
   PlannedTravel& travel = form.travel;
-  if (form.hidden) travel = OpenTravel(from, to);
   double across_mm = travel.mm;
   if (form.given && !form.boundary && !form.hidden) {
     const PrintTotals measured = MeasureLink(file_, to.block, walls_);
@@ -47,13 +46,14 @@ TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, con
 
 PlannedTravel LayerLinks::OpenTravel(const Placement& from, const Placement& to) const {
   PlannedTravel travel;
-  travel.from = departures_.End(from);
-  travel.to = departures_.Begin(to);
+  const Vertex end = departures_.End(from);
   const Vertex leaves = departures_.Open(from);
+  travel.from = leaves;
+  travel.to = departures_.Begin(to);
   travel.mm = Distance(leaves, travel.to);
-  if (!(leaves == travel.from)) {
+  if (!(leaves == end)) {
     travel.mm += departures_.Of(from, /*wipes=*/false)->mm;
-    travel.via.push_back(leaves);
+    travel.ahead = {leaves.x - end.x, leaves.y - end.y};
   }
   return travel;
 }

@@ -266,7 +266,8 @@ double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& m
 
 double NewTravelSeconds(const GcodeFile& file, uint32_t before, const PlannedTravel& planned,
                         const TravelModel& model, const TravelJoints* joints) {
-  if (planned.via.empty() && (joints == nullptr || planned.retracts)) {
+  const bool straight = planned.via.empty() && planned.ahead == Vertex{};
+  if (straight && (joints == nullptr || planned.retracts)) {
     const double printing =
         joints == nullptr ? 0 : StopSeconds(joints->from) + StopSeconds(joints->to);
     return printing + StopToStopSeconds(Distance(planned.from, planned.to), model.speed_mm_s,
@@ -278,11 +279,9 @@ double NewTravelSeconds(const GcodeFile& file, uint32_t before, const PlannedTra
     planner.Go(to.x - at.x, to.y - at.y);
     at = to;
   };
-  if (planned.retracts && !planned.stands) planner.Stop();
-  for (size_t bend = 0; bend < planned.via.size(); ++bend) {
-    go(planned.via[bend]);
-    if (bend == 0 && planned.stands) planner.Stop();
-  }
+  if (!(planned.ahead == Vertex{})) planner.Go(planned.ahead.x, planned.ahead.y);
+  if (planned.retracts) planner.Stop();
+  for (const Vertex& bend : planned.via) go(bend);
   go(planned.to);
   if (planned.retracts) planner.Stop();
   return planner.Seconds();

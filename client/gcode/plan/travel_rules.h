@@ -82,8 +82,8 @@ struct PlannedTravel {
   bool retracts = false;
   bool crosses = false;     // a visible wall, and there is no detour
   double mm = 0;            // including bends
-  std::vector<Vertex> via;  // the bends of the detour around visible walls; empty: straight
-  bool stands = false;      // at the first bend, where filament is pulled back
+  std::vector<Vertex> via;  // its bends, around walls; empty: straight
+  Vertex ahead;  // a short move ahead of it, behind which it pulls filament back if it does
 };
 
 // The same for one layer: top and bottom layers often retract where others do not.
@@ -114,9 +114,6 @@ class TravelRules {
   // Whether moves to paths of `feature` always retract, as far as the file shows.
   // REQUIRES: habit.crossing_matters, as otherwise all of them do, or none.
   bool AlwaysRetracts(Feature feature) const;
-
-  // The detours of new moves around visible walls; null if the file's travel makes none.
-  const Detours* detours() const { return detours_ ? &*detours_ : nullptr; }
 
  private:
   const RetractionCount& CountOf(Feature feature) const;

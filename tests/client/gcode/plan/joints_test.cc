@@ -118,11 +118,10 @@ TEST(TravelSeconds, StopForARetractionLikeNewOnes) {
   const Joint joint{{1, 0}, 20, 1250};
   const TravelJoints joints{joint, joint};
   PlannedTravel travel;
-  travel.from = {10, 0};
+  travel.ahead = {.4, 0};
+  travel.from = {10.4, 0};
   travel.to = {30, 0};
-  travel.via = {{10.4, 0}};
   travel.retracts = true;
-  travel.stands = true;
 
   const double seconds = TravelSeconds(*file, 1, kTravel, true, &joints);
   EXPECT_NEAR(seconds, NewTravelSeconds(*file, 0, travel, kTravel, &joints), 1e-9);
