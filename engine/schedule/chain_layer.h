@@ -154,7 +154,8 @@ struct TrueStart {
   // What they cost more than greedy's chain, since the last whose start was certain.
   double over_greedy = 0;
 
-  // The layer that begins where this one ends; null if it is not known yet.
+  // Whether a layer may begin where this one ends, and that layer; null if it is not known yet.
+  bool is_followed = false;
   std::shared_ptr<const ChainLayer> next = nullptr;
 };
 

@@ -153,7 +153,9 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, TrueStart at) {
   {
     MutexLock lock(mutex_);
     const uint64_t next = layer->index + 1;
-    if (next < next_to_prepare_ && !solver_.FixedStart(*LayerAt(next))) at.next = LayerAt(next);
+    at.is_followed = next < added_ ? !solver_.FixedStart(*LayerAt(next)).has_value()
+                                   : !closed_ && !solver_.CleaningDueAfter(layer->index);
+    if (at.is_followed && next < next_to_prepare_) at.next = LayerAt(next);
   }
   LayerOutcome outcome;
   const Budget::Clock::duration used = layer->used;

@@ -116,6 +116,7 @@ class LayerSolver {
                          const KnownRoute* known, const Solution& solution) const;
   bool KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
                         Solution& solution) const;
+  double MostOverGreedyFrom(Point end, const ChainLayer& layer, const TrueStart& at) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
   bool KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,

@@ -8,6 +8,7 @@
 #include "absl/time/time.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
+#include "engine/cost/travel_cost.h"
 #include "engine/schedule/layer_solver.h"
 
 namespace traverse {
@@ -95,24 +96,39 @@ bool LayerSolver::KeepWithinInitial(const LayerProblem& problem, const ChainLaye
 }
 
 // A cheaper route may end where all that follows costs more. So where the clock cut a search short,
-// the job must be able to go on by greedy's chain from the next layer on, and cost no more than
-// that in all; if not, the layer keeps to greedy's chain, from which it can. Returns whether it
-// does.
+// the job must be able to go on by greedy's chain from the next layer on, also if that has not come
+// yet, and cost no more than that in all; if not, the layer keeps to greedy's chain, from which it
+// can. Returns whether it does.
 bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer,
                                    const TrueStart& at, Solution& solution) const {
-  const bool knows = layer.greedy && !layer.walls && at.next != nullptr && at.next->greedy &&
-                     !at.next->walls && layer.greedy->route.size() == solution.route.size();
+  const bool knows = layer.greedy && layer.greedy->route.size() == solution.route.size();
   if (!knows || solution.stop != StopReason::kTimeLimit || strategy_->traits().pure) return false;
-  const double chain = layer.greedy->cost + at.next->greedy->cost;
   const auto over = [&](const Route& route) {
     const Point end = layer.finish.value_or(RouteEnd(layer.given.plan, route, problem.start));
-    return at.over_greedy + RouteCost(problem, route) +
-           RouteCost(Problem(*at.next, end), at.next->greedy->route) - chain;
+    return at.over_greedy + RouteCost(problem, route) - layer.greedy->cost +
+           MostOverGreedyFrom(end, layer, at);
   };
   const double of_solution = over(solution.route);
-  if (of_solution <= kSameCost * chain || over(layer.greedy->route) >= of_solution) return false;
+  const double same = kSameCost * layer.greedy->cost;
+  if (of_solution <= same || over(layer.greedy->route) >= of_solution) return false;
   solution.route = layer.greedy->route;
   return true;
+}
+
+// What the layers behind this one cost more from `end` than from where greedy's chain ends it, if
+// they go on by that chain. If they are not known, or their walls may not be asked about because
+// the layer is being searched: at most. They go to that end first, or cross to where they begin.
+double LayerSolver::MostOverGreedyFrom(Point end, const ChainLayer& layer,
+                                       const TrueStart& at) const {
+  if (!at.is_followed || end == layer.greedy->end) return 0;
+  const ChainLayer* const next = at.next.get();
+  if (next != nullptr && next->greedy && !next->walls)
+    return RouteCost(Problem(*next, end), next->greedy->route) - next->greedy->cost;
+  const CostSpec& cost = next != nullptr ? next->cost : layer.cost;
+  const double length_mm = Distance(end, layer.greedy->end);
+  if (cost.kind == CostSpec::Kind::kLength) return length_mm;
+  return TravelCost(cost).Motion(length_mm) + cost.retraction_seconds + cost.lift_seconds +
+         cost.crossing_seconds;
 }
 
 // Whether greedy's route may still be better: it cannot be if the strategy began at this very
