@@ -20,8 +20,9 @@ class Executor {
   // Runs `task` once, but not before this call returns.
   virtual void Submit(std::function<void()> task) = 0;
 
-  // The same for a task that works on `points` points: it may take long and need much memory.
-  virtual void SubmitLarge(std::function<void()> task, int64_t /*points*/) {
+  // The same for a task that works on `points` points: it may take long and need much memory. Of
+  // the tasks that wait, one of a lower `rank` had better begin first: others depend on it.
+  virtual void SubmitLarge(std::function<void()> task, int64_t /*points*/, uint64_t /*rank*/ = 0) {
     Submit(std::move(task));
   }
 

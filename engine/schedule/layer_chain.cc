@@ -226,7 +226,7 @@ void LayerChain::MaybePrepare() {
     if (learned.known) routes_.Learn(learned.shape, learned.key, learned.known);
   }
   preparing_ = true;
-  Submit([this, layer] { RunPrepare(layer); }, layer->size.points);
+  Submit([this, layer] { RunPrepare(layer); }, *layer);
 }
 
 // The first solution of a layer, once there is a route to start from.
@@ -235,7 +235,7 @@ void LayerChain::MaybeSolveFirst(const ChainLayerPtr& layer) {
     layer->precursor->waiting.push_back(layer->index);
     return;
   }
-  Submit([this, layer] { RunSolveFirst(layer); }, layer->size.points);
+  Submit([this, layer] { RunSolveFirst(layer); }, *layer);
 }
 
 // Gives the first solution to the layers that start from it.
@@ -258,7 +258,7 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
     if (!start) return;
     if (*start != layer->predicted_start) {
       layer->second_start = start;
-      Submit([this, layer] { RunSolveSecond(layer); }, layer->size.points);
+      Submit([this, layer] { RunSolveSecond(layer); }, *layer);
       return;
     }
   }
@@ -284,7 +284,7 @@ void LayerChain::MaybeSolveAlone(uint64_t index) {
   }
   if (!start) return;
   layer->solving_alone = true;
-  Submit([this, layer, start = *start] { RunSolveAlone(layer, start); }, layer->size.points);
+  Submit([this, layer, start = *start] { RunSolveAlone(layer, start); }, *layer);
 }
 
 // Sets the layers that layer `index` is ended in view of; returns false while one of them is
@@ -328,7 +328,7 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   if (!solver_.FixedStart(*layer)) at.over_greedy = LayerAt(index - 1)->over_greedy;
   if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
-  Submit([this, layer, at] { RunAnchor(layer, at); }, layer->size.points);
+  Submit([this, layer, at] { RunAnchor(layer, at); }, *layer);
 }
 
 // Layers from the front that are done, except the last of them: its end is the next one's start.
@@ -344,7 +344,7 @@ void LayerChain::MaybeFinish() {
   if (finished_ || tasks_ > 0 || !(all_done || cancel_.cancelled())) return;
   if (BoundsChain() && !bounding_chain_ && !cancel_.cancelled()) {
     bounding_chain_ = true;
-    Submit([this] { RunBoundChain(); }, chain_bound_.points());
+    Submit([this] { RunBoundChain(); }, chain_bound_.points(), added_);
     return;
   }
   finished_ = true;
@@ -352,7 +352,12 @@ void LayerChain::MaybeFinish() {
   executor_.Submit([self = shared_from_this(), bound] { self->outbox_.Done(bound); });
 }
 
-void LayerChain::Submit(std::function<void()> stage, int64_t points) {
+// Earlier layers first: their ends are what the anchors of all others wait for.
+void LayerChain::Submit(std::function<void()> stage, const ChainLayer& layer) {
+  Submit(std::move(stage), layer.size.points, layer.index);
+}
+
+void LayerChain::Submit(std::function<void()> stage, int64_t points, uint64_t rank) {
   if (cancel_.cancelled()) return;
   const std::optional<Budget::Clock::time_point> search_end = split_.SearchEnd();
   const Budget::Clock::time_point submitted = Now();
@@ -377,7 +382,7 @@ void LayerChain::Submit(std::function<void()> stage, int64_t points) {
     }
     stage();
   };
-  executor_.SubmitLarge(std::move(run), points);
+  executor_.SubmitLarge(std::move(run), points, rank);
 }
 
 void LayerChain::RunLate() {

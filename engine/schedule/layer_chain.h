@@ -108,7 +108,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   }
   void KeepForBound(const ChainLayer& layer, const LayerOutcome& outcome);
   void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
-  void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);
+  void Submit(std::function<void()> stage, const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
+  void Submit(std::function<void()> stage, int64_t points, uint64_t rank) TRAVERSE_REQUIRES(mutex_);
 
   // Runs the stages that are due once no time is left for searching, one after the other.
   void RunLate() TRAVERSE_EXCLUDES(mutex_);

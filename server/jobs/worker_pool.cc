@@ -81,7 +81,9 @@ std::vector<SilentTask> WorkerPool::Silent(std::chrono::nanoseconds limit) {
 void WorkerPool::Submit(const std::shared_ptr<QueueImpl>& queue, Task task) {
   MutexLock lock(mutex_);
   if (queue->Idle()) Enter(*queue);
-  queue->tasks.push_back(std::move(task));
+  const auto before = [](const Task& a, const Task& b) { return a.rank < b.rank; };
+  queue->tasks.insert(std::upper_bound(queue->tasks.begin(), queue->tasks.end(), task, before),
+                      std::move(task));
   ++waiting_;
   LetWait(*queue);
   Dispatch();

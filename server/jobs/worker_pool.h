@@ -153,6 +153,7 @@ class WorkerPool {
     std::function<void()> run;
     Clock::time_point submitted;
     int64_t points = 0;
+    uint64_t rank = 0;
     std::shared_ptr<QueueImpl> queue = nullptr;  // which lives as long as its tasks
 
     bool small() const { return points <= kSmallPoints; }

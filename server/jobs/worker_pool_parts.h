@@ -89,10 +89,11 @@ class WorkerPool::QueueImpl : public Queue,
   QueueImpl(WorkerPool& pool, std::string caller, std::function<void()> on_no_memory)
       : pool(pool), caller(std::move(caller)), on_no_memory(std::move(on_no_memory)) {}
 
-  void Submit(std::function<void()> task) override { SubmitLarge(std::move(task), 0); }
+  void Submit(std::function<void()> task) override { SubmitLarge(std::move(task), 0, 0); }
 
-  void SubmitLarge(std::function<void()> task, int64_t points) override {
-    pool.Submit(shared_from_this(), {std::move(task), Clock::now(), points, shared_from_this()});
+  void SubmitLarge(std::function<void()> task, int64_t points, uint64_t rank) override {
+    pool.Submit(shared_from_this(),
+                {std::move(task), Clock::now(), points, rank, shared_from_this()});
   }
 
   int threads() const override { return pool.threads(); }
@@ -129,7 +130,7 @@ class WorkerPool::QueueImpl : public Queue,
   std::string job;
   Caller* entry = nullptr;  // of the caller; null while the queue is idle
   const std::function<void()> on_no_memory;
-  std::deque<Task> tasks;
+  std::deque<Task> tasks;  // those of lower rank first
   std::deque<Worker*> paused;
   std::atomic<Clock::time_point> due = Clock::time_point::max();  // the pool's mutex guards changes
   int under_way = 0;                                              // tasks begun and not yet ended

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -81,6 +83,58 @@ TEST(LayerChain, RoutesDoNotDependOnThreadsOrTheOrderOfTasks) {
     EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
     EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;
   }
+}
+
+// Runs the waiting task of the lowest rank, the oldest of these, when it is told to.
+class ByRank : public Executor {
+ public:
+  void Submit(std::function<void()> task) override { SubmitLarge(std::move(task), 0, 0); }
+  void SubmitLarge(std::function<void()> task, int64_t /*points*/, uint64_t rank) override {
+    tasks_.emplace(rank, std::move(task));
+  }
+  void Run() {
+    while (!tasks_.empty()) {
+      const std::function<void()> task = std::move(tasks_.begin()->second);
+      tasks_.erase(tasks_.begin());
+      task();
+    }
+  }
+
+ private:
+  std::multimap<uint64_t, std::function<void()>> tasks_;
+};
+
+// Counts the layers that it has solved.
+class Counted : public Strategy {
+ public:
+  explicit Counted(int& solved) : solved_(solved) {}
+  Solution Solve(const LayerProblem& problem, Budget& /*budget*/) const override {
+    ++solved_;
+    return Solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
+  }
+
+ private:
+  int& solved_;
+};
+
+// The other layers wait for where it ends.
+TEST(LayerChain, WantsALayerToBeAnsweredBeforeLaterOnesAreSolved) {
+  struct Sink : JobSink {
+    void OnLayer(LayerOutcome outcome) override { solved_at.emplace(outcome.index, solved); }
+    void OnDone() override { done = true; }
+    int solved = 0;
+    bool done = false;
+    std::map<uint64_t, int> solved_at;
+  } sink;
+  ByRank executor;
+  auto job = Job::Start(JobSpec(), std::make_unique<Counted>(sink.solved), executor, sink);
+  for (int i = 0; i < 20; ++i) job->Add({RingLayer(5, i), Point{}, {}});
+  job->Close();
+  executor.Run();
+
+  ASSERT_TRUE(sink.done);
+  for (const auto& [index, solved] : sink.solved_at)
+    EXPECT_EQ(solved, static_cast<int>(index) + 1) << "layer " << index;
 }
 
 TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {

@@ -103,6 +103,23 @@ TEST(WorkerPool, TasksMaySubmitTasks) {
   EXPECT_EQ(runs, 100);
 }
 
+TEST(WorkerPool, TasksOfAJobBeginByRankAndThenByAge) {
+  Gate gate;
+  Order order;
+  {
+    WorkerPool pool(1);
+    const auto queue = pool.NewQueue("a");
+    Block(pool, gate);
+    queue->SubmitLarge(order.Task("d"), 1, 7);
+    queue->SubmitLarge(order.Task("b"), 1, 2);
+    queue->SubmitLarge(order.Task("e"), 1, 7);
+    queue->SubmitLarge(order.Task("c"), 1, 2);
+    queue->SubmitLarge(order.Task("a"), 1, 0);
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "abcde");
+}
+
 TEST(WorkerPool, JobsOfOneCallerTakeTurns) {
   Gate gate;
   Order order;
