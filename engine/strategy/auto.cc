@@ -71,8 +71,10 @@ constexpr size_t kLookAheadPathsInHaste = 64;
 constexpr size_t kLookFurtherPaths = 150;
 
 // Of more paths together, only those near the border are kicked: so many of each layer. Of fewer,
-// searches take so little time that more effort is well worth it, up to so many times as much.
+// searches take so little time that more effort is well worth it, up to so many times as much;
+// unless the time counts: a search of all layers in view is what the layers behind them wait for.
 constexpr size_t kPathsSearchedTogether = 400;
+constexpr size_t kPathsSearchedTogetherInTime = 100;
 constexpr int kKickedAtBorder = 50;
 constexpr double kMostEffortOnFew = 4;
 
@@ -170,13 +172,14 @@ class AutoLayer : public PreparedLayer {
   // On a layer and those behind it. What large layers are on their own they are already: there only
   // what is near the border is worth a search.
   Effort EffortOnAll(const LayerProblem& problem, const Plan& all) const {
-    const double share =
-        static_cast<double>(kPathsSearchedTogether) / static_cast<double>(all.paths.size());
+    const bool time_counts = options_.idle_speed_mm_s > 0;
+    const size_t together = time_counts ? kPathsSearchedTogetherInTime : kPathsSearchedTogether;
+    const double share = static_cast<double>(together) / static_cast<double>(all.paths.size());
+    const double most = time_counts ? 1 : kMostEffortOnFew;
     const bool in_haste = options_.least_gain_each > 0;
     const bool is_short = in_haste || problem.is_searched;
-    Effort effort{
-        options_.effort * (is_short ? kResumeShare : std::clamp(share, 1.0, kMostEffortOnFew)),
-        options_.effort * 2 * kResumeShare, !problem.is_searched};
+    Effort effort{options_.effort * (is_short ? kResumeShare : std::clamp(share, 1.0, most)),
+                  options_.effort * 2 * kResumeShare, !problem.is_searched};
     if (share >= 1) return effort;
     const int border = static_cast<int>(problem.plan->paths.size());  // its last path's position
     effort.first_kicked = std::max(1, border + 1 - kKickedAtBorder);

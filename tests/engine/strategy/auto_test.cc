@@ -218,5 +218,21 @@ TEST(Auto, EndsWhenSearchingOnSavesLessTravelThanItTakes) {
   EXPECT_GE(iterations("0"), 1400);
 }
 
+// However little a second is worth.
+TEST(Auto, SearchesTwoLayersNoHarderThanOneWhereTimeCounts) {
+  const Plan plan = FlatPlan(6);
+  const Route given = GivenRoute(plan);
+  const LayerProblem problem{&plan, {0, 0}, std::nullopt, CostSpec(), 1};
+  const auto iterations = [&](const std::string& speed) {
+    Budget budget;
+    std::vector<NextLayer> next = {{problem, given}};
+    const auto strategy = *MakeStrategy("auto", {{"idle_speed", speed}});
+    return strategy->ResumeWithNext(problem, given, next, budget).statistics.at("iterations");
+  };
+
+  EXPECT_LT(iterations("1e-9"), 600);
+  EXPECT_GT(iterations("0"), 700);
+}
+
 }  // namespace
 }  // namespace traverse
