@@ -45,11 +45,15 @@ void SetDeadline(grpc::ClientContext& context, absl::Duration deadline) {
   context.set_deadline(absl::ToChronoTime(absl::Now() + deadline));
 }
 
-// Keeps only the two ends of an open path.
+// As OpenPath.points may be; of NaN not true.
+bool MayBeSent(double mm) { return mm >= -1e6 && mm <= 1e6; }
+
+// Keeps only the two ends of an open path, unless the service has something to refuse between them.
 void Strip(v1::OpenPath& path) {
   const int n = path.points_size();
   if (n <= 4 || n % 2 != 0) return;  // the service refuses odd numbers
   auto& points = *path.mutable_points();
+  if (!std::all_of(points.begin(), points.end(), MayBeSent)) return;
   points[2] = points[n - 2];
   points[3] = points[n - 1];
   points.Truncate(4);
@@ -315,10 +319,11 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
 }
 
 absl::StatusOr<v1::ListStrategiesResponse> OptimizerClient::ListStrategies(
-    absl::Duration deadline) {
+    absl::Duration deadline, const std::stop_token& cancel) {
   grpc::ClientContext context;
   Authorize(context);
   SetDeadline(context, deadline);
+  const std::stop_callback on_cancel(cancel, [&] { context.TryCancel(); });
   v1::ListStrategiesResponse response;
   const grpc::Status status = stub_->ListStrategies(&context, {}, &response);
   if (!status.ok()) return FromGrpc(status);

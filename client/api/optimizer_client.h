@@ -76,9 +76,10 @@ class OptimizerClient {
                                      absl::Span<const v1::Layer> layers,
                                      const CallOptions& call = {});
 
-  // Returns the server's strategies.
+  // Returns the server's strategies. When stop is requested, it ends within milliseconds with
+  // Cancelled.
   absl::StatusOr<v1::ListStrategiesResponse> ListStrategies(
-      absl::Duration deadline = absl::InfiniteDuration());
+      absl::Duration deadline = absl::InfiniteDuration(), const std::stop_token& cancel = {});
 
  private:
   void Authorize(grpc::ClientContext& context) const;

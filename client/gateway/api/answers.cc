@@ -43,6 +43,12 @@ bool WantsEvents(const HttpRequest& request) {
   return absl::StrContains(request.Header("accept"), "text/event-stream");
 }
 
+std::stop_source StopWhenGone(HttpReply& reply) {
+  std::stop_source stop;
+  reply.OnGone([stop]() mutable { stop.request_stop(); });
+  return stop;
+}
+
 HttpResponse EventsHead() {
   HttpResponse head;
   head.content_type = "text/event-stream";

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_ANSWERS_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_ANSWERS_H_
 
+#include <stop_token>
 #include <string>
 
 #include "client/gateway/http/message.h"
@@ -26,6 +27,9 @@ std::string ProblemEvent(const HttpResponse& refusal);
 
 // Whether the answer may be events.
 bool WantsEvents(const HttpRequest& request);
+
+// Is stopped when the client leaves.
+std::stop_source StopWhenGone(HttpReply& reply);
 
 // The head of an answer of events.
 HttpResponse EventsHead();

@@ -22,13 +22,6 @@ void SendMessage(HttpReply& reply, const absl::StatusOr<Message>& found) {
   reply.Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n") : ProblemOf(found.status()));
 }
 
-// Is stopped when the client leaves.
-std::stop_source StopWhenGone(HttpReply& reply) {
-  std::stop_source stop;
-  reply.OnGone([stop]() mutable { stop.request_stop(); });
-  return stop;
-}
-
 enum class AnswerKind { kFile, kJson, kEvents };
 
 AnswerKind KindOf(const HttpRequest& request) {

@@ -167,8 +167,7 @@ HttpDecision OptimizeRoute(const HttpRequest& request, const std::string& caller
                     .as_document = as_document,
                     .finish_by = absl::Now() + std::min(deadline, core.options.max_time),
                     .reply = reply,
-                    .stop = {}};
-    reply->OnGone([stop = job.stop]() mutable { stop.request_stop(); });
+                    .stop = StopWhenGone(*reply)};
     core.Submit(
         ticket, {job.file}, [&core, job](const absl::Status& may) { Run(core, job, may); },
         FileUse::kOptimize);
@@ -182,9 +181,9 @@ HttpDecision StrategiesRoute(const std::string& caller, Core& core) {
   if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
   return std::make_unique<NoBody>(
       [&core, ticket = std::get<TicketPtr>(std::move(entered))](const ReplyPtr& reply) {
-        core.Submit(ticket, {}, [&core, reply](const absl::Status&) {
+        core.Submit(ticket, {}, [&core, reply, stop = StopWhenGone(*reply)](const absl::Status&) {
           constexpr absl::Duration kPatience = absl::Seconds(10);
-          const auto found = core.client->ListStrategies(kPatience);
+          const auto found = core.client->ListStrategies(kPatience, stop.get_token());
           reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
                                  : ServiceProblem(found.status()));
         });

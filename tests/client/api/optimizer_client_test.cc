@@ -110,6 +110,21 @@ TEST(OptimizerClient, SendsTheEndsOfOpenPathsAlone) {
 }
 
 // Both sides would wait for ever if the client sent everything before it read anything.
+// Points that are not sent would be refused by nobody.
+TEST(OptimizerClient, SendsAllOfAnOpenPathWithPointsThatTheServiceRefuses) {
+  FakeService service;
+  OptimizerClient client(service.InProcessChannel());
+  std::vector<v1::Layer> layers = Layers(2, 3, 5);
+  layers[0].mutable_islands(0)->mutable_rasters(0)->set_points(3, std::nan(""));
+  layers[1].mutable_islands(0)->mutable_rasters(0)->set_points(4, -1.1e6);
+
+  ASSERT_TRUE(client.Optimize({}, layers).ok());
+
+  ASSERT_THAT(service.layers, SizeIs(2));
+  for (const v1::Layer& layer : service.layers)
+    EXPECT_THAT(layer.islands(0).rasters(0).points(), SizeIs(10));
+}
+
 // Half a point is for the service to refuse.
 TEST(OptimizerClient, SendsOpenPathsThatAreNoneAsTheyAre) {
   FakeService service;

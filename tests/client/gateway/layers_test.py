@@ -144,6 +144,8 @@ class Answers(Case):
         self.assertEqual(problem["code"], "INVALID_ARGUMENT")
         self.assertEqual([fault["field"] for fault in problem["details"]],
                          ["layers[1].islands[0].contours[3].points", "layers[1].islands[0].contours[4].points[1].y"])
+        inner = {"layers": [{"islands": [{"rasters": [{"points": [0, 0, 1, "NaN", 2, 2]}]}]}]}
+        self.refused(400, "layers[0].islands[0].rasters[0].points[1].y: not finite", self.post(self.gateway, inner, Accept="application/json"))
         # In lines, the first layer may have been answered by then.
         answer = self.post(self.gateway, bad)
         if answer[0] == 200:
@@ -280,6 +282,22 @@ class Behind(Case):
         server.close()
         self.refused(503, "", self.post(gateway, job(1), "?deadline=20s"))
         self.assertEqual(gateway.ask("GET", "/v1/strategies")[0], 503)
+
+    def test_a_client_who_leaves_holds_no_worker_while_the_strategies_are_awaited(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            gateway = self.start(lambda *flags: Gateway(*flags, threads=2), f"--server=127.0.0.1:{silent.getsockname()[1]}")
+            clients = [socket.create_connection(("127.0.0.1", gateway.http_port)) for _ in range(2)]
+            for client in clients:
+                self.addCleanup(client.close)
+                client.sendall(b"GET /v1/strategies HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+            def wait_for_busy(workers):
+                while gateway.metric("traverse_gateway_workers_busy") != workers:
+                    time.sleep(.01)
+            wait_for_busy(2)
+            clients[0].close()
+            wait_for_busy(1)
+            clients[1].setblocking(False)
+            self.assertRaises(BlockingIOError, clients[1].recv, 1)  # it waits on
 
     def test_of_two_servers_one_dies_and_no_layer_is_lost_or_told_twice(self):
         servers = [self.start(Server) for _ in range(2)]
