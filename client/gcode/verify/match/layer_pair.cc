@@ -138,9 +138,9 @@ void LayerPair::LearnFacts() {
     facts.piece_count = static_cast<uint32_t>(pieces_.size()) - facts.first_piece;
     facts.closed = IsClosed(was_, path);
     facts.path_class = traced.path_class;
-    facts.outer = traced.path_class == PathClass::kOuterWall ||
-                  traced.path_class == PathClass::kOverhang ||
-                  (IsWallClass(traced.path_class) && (traced.outer || traced.overhangs));
+    // Whether an overhanging wall is an outer one the rest of its loop tells, if that has a name.
+    facts.outer = IsWallClass(traced.path_class) &&
+                  (traced.outer || (traced.overhangs && !traced.inner));
   }
 }
 

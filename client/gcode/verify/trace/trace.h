@@ -55,6 +55,7 @@ struct TracePath {
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // part of it is of class kOverhang
   bool outer = false;      // part of it is of class kOuterWall
+  bool inner = false;      // part of it is of class kInnerWall
   bool joined = false;     // begins where the path before it ends, without a move in between
   uint32_t size() const { return end_segment - first_segment; }
 };

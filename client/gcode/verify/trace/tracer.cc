@@ -283,6 +283,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   const PathClass path_class = ClassNow(line);
   path.overhangs |= path_class == PathClass::kOverhang;
   path.outer |= path_class == PathClass::kOuterWall;
+  path.inner |= path_class == PathClass::kInnerWall;
   float& of_class = length_of_[static_cast<size_t>(path_class)];
   of_class += length + 1e-6f;
   if (of_class > length_of_[static_cast<size_t>(path.path_class)]) path.path_class = path_class;

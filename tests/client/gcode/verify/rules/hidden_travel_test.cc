@@ -116,6 +116,26 @@ TEST(HiddenTravel, MayBendAroundAWallIfThatIsAllowed) {
             "");
 }
 
+// An inner wall that overhangs over more than half of its length is still no wall that is seen.
+TEST(HiddenTravel, PassesAnInnerWallThatOverhangsInPart) {
+  const auto print = [](const std::string& begins_as) {
+    Stack stack;
+    for (const double z : {0.2, 0.4, 0.6}) {
+      stack.Layer(z).Wall(0, 0, 20);
+      stack.Add(Stack::Open(.45, .45) + "G1 E.8 F2100\n;TYPE:" + begins_as +
+                "\nG1 F1200\nG1 X19.55 Y.45 E.714\n;TYPE:Overhang perimeter\nG1 X19.55 Y19.55 "
+                "E.714\nG1 X.45 Y19.55 E.714\nG1 X.45 Y.45 E.714\nG1 E-.8 F2100\n");
+      stack.Line(2, 4, 16).Line(2, 10, 16);
+    }
+    return stack.Text();
+  };
+  const std::string inner = print("Perimeter");
+  const std::string outer = print("External perimeter");
+
+  EXPECT_EQ(BrokenRules(inner, Opened(inner, 2, 10, 2), Hiding()), "");
+  EXPECT_NE(BrokenRules(outer, Opened(outer, 2, 10, 2), Hiding()), "");
+}
+
 TEST(HiddenTravel, IsReadFromTheLineAtTheHead) {
   const std::string print = Print();
   const std::string open = Opened(print, 2, 10, 2);
