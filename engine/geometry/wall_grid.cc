@@ -62,7 +62,7 @@ void WallGrid::SizeCells(Rest& rest) {
 // Counting sort: how many entries a cell has, then where they begin, then the entries.
 void WallGrid::Fill(Rest& rest) {
   const auto for_each_cell = [&](const WallSegment& segment, const auto& visit) {
-    ForEachRow(segment.a, segment.b, [&](int row, int first, int last) {
+    ForEachRow(segment.a, segment.b, 0, [&](int row, int first, int last) {
       rest(static_cast<size_t>(last - first) + 1);
       const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
       for (int column = first; column <= last; ++column) {

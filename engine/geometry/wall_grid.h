@@ -72,10 +72,11 @@ class WallGrid {
   // The move without its ignored ends.
   std::pair<Point, Point> WithoutEnds(Point a, Point b, MoveEnds ends = {}) const;
 
-  // Calls visit(index of a segment) for all segments that may meet the straight line from `a` to
-  // `b`, for some more than once, until it returns false.
+  // Calls visit(index of a segment) for all segments that may come as near as `beside_mm` to the
+  // straight line from `a` to `b`, for some more than once, until it returns false. 0: that may
+  // meet it.
   template <typename Visit>
-  void ForEachOnLine(Point a, Point b, Visit visit) const;
+  void ForEachOnLine(Point a, Point b, Visit visit, double beside_mm = 0) const;
 
  private:
   int Column(double x) const {
@@ -85,9 +86,10 @@ class WallGrid {
     return static_cast<int>(std::clamp((y - low_.y) * per_mm_, 0.0, rows_ - 1.0));
   }
 
-  // Calls visit(row, first column, last column) for the rows of cells that contain the line.
+  // Calls visit(row, first column, last column) for the rows of cells that contain the line, or
+  // are as near to it as `beside_mm`.
   template <typename Visit>
-  void ForEachRow(Point a, Point b, Visit visit) const;
+  void ForEachRow(Point a, Point b, double beside_mm, Visit visit) const;
   void SizeCells(Rest& rest);
   void Fill(Rest& rest);
 
@@ -105,36 +107,39 @@ class WallGrid {
 };
 
 template <typename Visit>
-void WallGrid::ForEachRow(Point a, Point b, Visit visit) const {
+void WallGrid::ForEachRow(Point a, Point b, double beside_mm, Visit visit) const {
   // More than rounding can shift a point of the line.
   constexpr double kSlack = 1e-6;
+  const double beside = beside_mm + kSlack;
   if (a.y > b.y) std::swap(a, b);
-  const int first = Row(a.y - kSlack);
-  const int last = Row(b.y + kSlack);
+  const int first = Row(a.y - beside);
+  const int last = Row(b.y + beside);
   const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
   for (int row = first; row <= last; ++row) {
     double x0 = a.x;
     double x1 = b.x;
     if (first != last && b.y - a.y > kSlack) {
-      const double top = low_.y + (row + 1) * cell_mm_ + kSlack;
-      const double bottom = low_.y + row * cell_mm_ - kSlack;
+      const double top = low_.y + (row + 1) * cell_mm_ + beside;
+      const double bottom = low_.y + row * cell_mm_ - beside;
       if (row > first) x0 = a.x + slope * std::clamp(bottom - a.y, 0.0, b.y - a.y);
       if (row < last) x1 = a.x + slope * std::clamp(top - a.y, 0.0, b.y - a.y);
     }
-    const double slack = kSlack * (1 + std::abs(slope) * 1e-6);
+    const double slack = beside_mm + kSlack * (1 + std::abs(slope) * 1e-6);
     visit(row, Column(std::min(x0, x1) - slack), Column(std::max(x0, x1) + slack));
   }
 }
 
 template <typename Visit>
-void WallGrid::ForEachOnLine(Point a, Point b, Visit visit) const {
+void WallGrid::ForEachOnLine(Point a, Point b, Visit visit, double beside_mm) const {
   if (segments_.empty()) return;
-  if (std::max(a.x, b.x) < box_.low().x || std::min(a.x, b.x) > box_.high().x ||
-      std::max(a.y, b.y) < box_.low().y || std::min(a.y, b.y) > box_.high().y) {
+  if (std::max(a.x, b.x) < box_.low().x - beside_mm ||
+      std::min(a.x, b.x) > box_.high().x + beside_mm ||
+      std::max(a.y, b.y) < box_.low().y - beside_mm ||
+      std::min(a.y, b.y) > box_.high().y + beside_mm) {
     return;
   }
   bool going_on = true;
-  ForEachRow(a, b, [&](int row, int first, int last) {
+  ForEachRow(a, b, beside_mm, [&](int row, int first, int last) {
     if (!going_on) return;
     const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
     const uint32_t begin = first_[cell + static_cast<size_t>(first)];

@@ -1,6 +1,7 @@
 #include "client/gcode/model/visible_walls.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "client/gcode/model/segment_grid.h"
@@ -28,6 +29,8 @@ WallCrowd NoCrowdYet(const std::vector<Outline>& outlines) {
   return low.x <= high.x ? WallCrowd(low, high) : WallCrowd({0, 0}, {0, 0});
 }
 
+Segment SegmentOf(Point a, Point b) { return {{a.x, a.y}, {b.x, b.y}, 0}; }
+
 }  // namespace
 
 bool IsVisibleWall(Feature feature) {
@@ -50,20 +53,66 @@ std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
   return walls;
 }
 
+VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines)
+    : VisibleWalls(outlines, VisibleWallsOf(outlines)) {}
+
+VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines, const std::vector<Wall>& walls)
+    : grid_(walls, kEndSlackMm) {
+  half_mm_.reserve(walls.size());
+  for (const Wall& wall : walls) {
+    half_mm_.push_back(outlines[static_cast<size_t>(wall.path)].width_mm / 2);
+    widest_half_mm_ = std::max(widest_half_mm_, half_mm_.back());
+  }
+}
+
+bool VisibleWalls::Touched(absl::Span<const Vertex> travel) const {
+  // Arcs are chords here, and coordinates are rounded.
+  constexpr double kNearerMm = 0.02;
+  const auto at = [&](size_t i) { return Point{travel[i].x, travel[i].y}; };
+  const size_t last = travel.size() - 1;
+  const Point begin = grid_.WithoutEnds(at(0), at(1)).first;
+  const Point end = grid_.WithoutEnds(at(last - 1), at(last)).second;
+  bool touches = false;
+  for (size_t i = 1; i <= last && !touches; ++i) {
+    const Point from = i == 1 ? begin : at(i - 1);
+    const Point to = i == last ? end : at(i);
+    const auto visit = [&](uint32_t s) {
+      const WallSegment& wall = grid_.segments()[s];
+      const double half = half_mm_[wall.wall];
+      const double mm = std::sqrt(SquaredDistance(SegmentOf(from, to), SegmentOf(wall.a, wall.b)));
+      touches = mm < half && mm + kNearerMm < DistanceMm(wall.wall, begin, half) &&
+                mm + kNearerMm < DistanceMm(wall.wall, end, half);
+      return !touches;
+    };
+    grid_.ForEachOnLine(from, to, visit, widest_half_mm_);
+  }
+  return touches;
+}
+
+double VisibleWalls::DistanceMm(uint32_t wall, Point point, double most_mm) const {
+  const Segment at = SegmentOf(point, point);
+  double squared = most_mm * most_mm;
+  const auto visit = [&](uint32_t s) {
+    const WallSegment& near = grid_.segments()[s];
+    if (near.wall == wall) {
+      squared = std::min(squared, SquaredDistance(at, SegmentOf(near.a, near.b)));
+    }
+    return true;
+  };
+  grid_.ForEachOnLine(point, point, visit, most_mm);
+  return std::sqrt(squared);
+}
+
 bool VisibleWalls::IsOnOne(Vertex point) const {
   constexpr double kBesideMm = 0.05;
   const Segment at{point, point, 0};
   bool found = false;
   const auto visit = [&](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
-    const Segment segment{{wall.a.x, wall.a.y}, {wall.b.x, wall.b.y}, 0};
-    found = found || SquaredDistance(at, segment) <= kBesideMm * kBesideMm;
+    found = SquaredDistance(at, SegmentOf(wall.a, wall.b)) <= kBesideMm * kBesideMm;
     return !found;
   };
-  for (const double side : {-kBesideMm, kBesideMm}) {
-    grid_.ForEachOnLine({point.x - kBesideMm, point.y + side},
-                        {point.x + kBesideMm, point.y + side}, visit);
-  }
+  grid_.ForEachOnLine({point.x, point.y}, {point.x, point.y}, visit, kBesideMm);
   return found;
 }
 

@@ -3,8 +3,10 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_VISIBLE_WALLS_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_VISIBLE_WALLS_H_
 
+#include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/model/outline.h"
 #include "engine/geometry/wall_grid.h"
 
@@ -31,14 +33,18 @@ class VisibleWalls {
   static constexpr double kEndSlackMm = 0.25;
 
   // The walls among the outlines of one layer.
-  explicit VisibleWalls(const std::vector<Outline>& outlines)
-      : grid_(VisibleWallsOf(outlines), kEndSlackMm) {}
+  explicit VisibleWalls(const std::vector<Outline>& outlines);
 
   // True if the straight move from `a` to `b` crosses one. Ends that lie on a wall, or touch it, do
   // not count. The search uses the same function.
   bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
 
-  // The same for a move with bends, near which it is tested too.
+  // True if a move by these points, without its ends, comes nearer to one than half its width, and
+  // nearer than both ends: as slicers' own unretracted travel does not. So a move along a wall,
+  // from line to line beside it, does not touch it. REQUIRES: two points at the least.
+  bool Touched(absl::Span<const Vertex> travel) const;
+
+  // Crossed for a move with bends, near which it is tested too.
   bool CrossedByTravel(const std::vector<Vertex>& travel) const;
 
   // The same for the moves of a travel move, of which some may be left out.
@@ -50,7 +56,14 @@ class VisibleWalls {
   const WallGrid& grid() const { return grid_; }
 
  private:
+  VisibleWalls(const std::vector<Outline>& outlines, const std::vector<Wall>& walls);
+
+  // From `point` to a segment of `wall`; `most_mm` if none is nearer.
+  double DistanceMm(uint32_t wall, Point point, double most_mm) const;
+
   WallGrid grid_;
+  std::vector<double> half_mm_;  // [wall of grid_]: half the width of its line
+  double widest_half_mm_ = 0;
 };
 
 }  // namespace traverse::gcode

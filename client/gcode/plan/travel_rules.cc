@@ -262,22 +262,25 @@ PlannedTravel TravelRules::TravelOf(Vertex a, Vertex b, Feature feature) const {
   travel.to = b;
   travel.mm = Distance(a, b);
   travel.crosses = walls_.Crossed(a, b);
+  const Vertex straight[] = {a, b};
+  absl::Span<const Vertex> line = straight;
+  std::vector<Vertex> bent;
   if (travel.crosses && detours_) {
     travel.via = detours_->Around(a, b);
     travel.crosses = travel.via.empty();
-    if (!travel.via.empty()) {
-      std::vector<Vertex> bent = {a};
-      bent.insert(bent.end(), travel.via.begin(), travel.via.end());
-      bent.push_back(b);
-      travel.mm = 0;
-      for (size_t i = 1; i < bent.size(); ++i) travel.mm += Distance(bent[i - 1], bent[i]);
-    }
+    bent = {a};
+    bent.insert(bent.end(), travel.via.begin(), travel.via.end());
+    bent.push_back(b);
+    line = bent;
+    travel.mm = 0;
+    for (size_t i = 1; i < bent.size(); ++i) travel.mm += Distance(bent[i - 1], bent[i]);
   }
   if (!habit_.retracts) return travel;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   travel.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
   travel.retracts = travel.retracts || ((far || habit_.spares_walls) && travel.crosses) ||
                     (far && travel.mm > habit_.longest_open_mm);
+  travel.retracts = travel.retracts || (!travel.crosses && walls_.Touched(line));
   return travel;
 }
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
@@ -34,6 +36,14 @@ TEST(WallGrid, LooksAtThreeFifthsOfAShortWay) {
 
   EXPECT_TRUE(WallGrid(wall, 100).Crosses({0, 0}, {1, 0}));
   EXPECT_FALSE(WallGrid(wall, 100).Crosses({0, 0}, {1.2, 0}));
+}
+
+double DistanceToLine(Point p, Point a, Point b) {
+  const Point way{b.x - a.x, b.y - a.y};
+  const double square = way.x * way.x + way.y * way.y;
+  const double dot = (p.x - a.x) * way.x + (p.y - a.y) * way.y;
+  const double t = square > 0 ? std::clamp(dot / square, 0.0, 1.0) : 0;
+  return Distance(p, {a.x + t * way.x, a.y + t * way.y});
 }
 
 // Walls and ways of every size and place, upright and level ones among them.
@@ -80,6 +90,15 @@ TEST(WallGrid, FindsWhatLookingAtEverySegmentFinds) {
       EXPECT_EQ(grid.Crosses(a, b), CrossesAny(walls, 0, a, b))
           << a.x << " " << a.y << " to " << b.x << " " << b.y;
       EXPECT_EQ(grid.Crosses(a, b), grid.Crosses(b, a));
+
+      const double beside = rng.Unit() * rng.Unit() * size;
+      std::vector<bool> visited(grid.segments().size());
+      const auto visit = [&visited](uint32_t s) { return visited[s] = true; };
+      grid.ForEachOnLine(a, b, visit, beside);
+      for (size_t s = 0; s < visited.size(); ++s) {
+        const Point end = grid.segments()[s].a;
+        EXPECT_TRUE(visited[s] || DistanceToLine(end, a, b) > beside);
+      }
     }
   }
 }

@@ -273,33 +273,86 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
   return m - link.first_move;
 }
 
-double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
-                                 uint32_t skipped) const {
+LayerPair::Travel LayerPair::TravelOf(const TraceChunk& chunk, uint32_t link, bool open,
+                                      uint32_t skipped) const {
   const TraceLink& traced = chunk.links[link];
-  std::vector<const TraceMove*> travel;
-  double length = 0;
+  std::vector<const TraceMove*> moves;
+  Travel travel;
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || move.open != open) continue;
-    travel.push_back(&move);
-    length += move.length_mm();
+    moves.push_back(&move);
+    travel.length_mm += move.length_mm();
   }
-  if (outer_walls_.empty() || length <= 0) return 0;
-  const double cut = std::min(kEndSlackMm, 0.2 * length);
+  const double cut = std::min(kEndSlackMm, 0.2 * travel.length_mm);
   double at = 0;
-  for (const TraceMove* move : travel) {
+  for (const TraceMove* move : moves) {
     const double own = move->length_mm();
     const double from = std::clamp(cut - at, 0.0, own);
-    const double to = std::clamp(length - cut - at, 0.0, own);
+    const double to = std::clamp(travel.length_mm - cut - at, 0.0, own);
     at += own;
     if (to <= from) continue;
     const auto point = [move, own](double t) {
       return Point{move->from.x + (move->to.x - move->from.x) * t / own,
                    move->from.y + (move->to.y - move->from.y) * t / own};
     };
-    if (MeetsOuterWall(point(from), point(to))) return length;
+    travel.moves.emplace_back(point(from), point(to));
   }
-  return 0;
+  return travel;
+}
+
+double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {
+  if (outer_walls_.empty()) return 0;
+  const Travel travel = TravelOf(chunk, link, open, 0);
+  const bool meets =
+      std::any_of(travel.moves.begin(), travel.moves.end(),
+                  [this](const auto& move) { return MeetsOuterWall(move.first, move.second); });
+  return meets ? travel.length_mm : 0;
+}
+
+double LayerPair::OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link,
+                                      uint32_t skipped) const {
+  if (outer_walls_.empty()) return 0;
+  const Travel travel = TravelOf(chunk, link, true, skipped);
+  const bool meets =
+      std::any_of(travel.moves.begin(), travel.moves.end(),
+                  [this](const auto& move) { return MeetsOuterWall(move.first, move.second); });
+  return meets || TouchesOuterWall(travel) ? travel.length_mm : 0;
+}
+
+bool LayerPair::TouchesOuterWall(const Travel& travel) const {
+  // Lines are wider than twice this. Chords of arcs and rounded coordinates are not that far off.
+  constexpr double kTouchMm = 0.08;
+  constexpr double kNearerMm = 0.05;
+  constexpr double kFarMm = kTouchMm + kNearerMm;
+  bool touches = false;
+  for (const auto& [a, b] : travel.moves) {
+    const double length = DistanceOf(a, b);
+    const auto visit = [&, a = a, b = b](uint32_t p) {
+      const Piece& wall = outer_walls_.pieces()[p];
+      const double mm = DistanceOfPieces(a, b, wall.a, wall.b);
+      touches = mm < kTouchMm &&
+                mm + kNearerMm < ToOuterWall(wall.path, travel.moves.front().first, kFarMm) &&
+                mm + kNearerMm < ToOuterWall(wall.path, travel.moves.back().second, kFarMm);
+      return !touches;
+    };
+    // Between these lines there is no room for a cell of the grid.
+    for (const double side : {-kTouchMm, 0.0, kTouchMm}) {
+      const double x = -side * (b.y - a.y) / length;
+      const double y = side * (b.x - a.x) / length;
+      if (!touches) outer_walls_.ForEachAlong({a.x + x, a.y + y}, {b.x + x, b.y + y}, visit);
+    }
+  }
+  return touches;
+}
+
+double LayerPair::ToOuterWall(uint32_t path, Point point, double most) const {
+  outer_walls_.ForEachNear(point, point, most, [&](uint32_t p) {
+    const Piece& wall = outer_walls_.pieces()[p];
+    if (wall.path == path) most = std::min(most, DistanceToPiece(point, wall.a, wall.b));
+    return true;
+  });
+  return most;
 }
 
 bool LayerPair::CrossesOuterWall(Point a, Point b) const {

@@ -100,16 +100,29 @@ class LayerPair {
                             bool any_speed = false);
 
   // The length of the travel of `link` across outer walls without a retraction (`open`) or with
-  // one; 0 if there is none. The ends, which may lie on walls, do not count, nor do `skipped` moves
-  // before it.
-  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
-                        uint32_t skipped = 0) const;
+  // one; 0 if there is none. The ends, which may lie on walls, do not count.
+  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const;
+
+  // The same without a retraction, also of travel that comes right over an outer wall that neither
+  // of its ends is that near to, and without `skipped` moves before it.
+  double OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link, uint32_t skipped) const;
 
   // True if the straight move from `a` to `b`, without its ends, crosses an outer wall.
   bool CrossesOuterWall(Point a, Point b) const;
 
  private:
+  // The travel of `link` behind `skipped` moves, without its ends, and its length with them.
+  struct Travel {
+    std::vector<std::pair<Point, Point>> moves;
+    double length_mm = 0;
+  };
+  Travel TravelOf(const TraceChunk& chunk, uint32_t link, bool open, uint32_t skipped) const;
+
   bool MeetsOuterWall(Point a, Point b) const;
+  bool TouchesOuterWall(const Travel& travel) const;
+
+  // From `point` to the outer wall `path`; `most` if that is less.
+  double ToOuterWall(uint32_t path, Point point, double most) const;
 
   struct Facts {
     PathClass path_class = PathClass::kUnnamed;

@@ -168,6 +168,21 @@ PrintTotals RingPastTheHole(const std::string& setting) {
   return Measure(*file, text, start, &writer.walls());
 }
 
+// Slicers' own open travel never passes over a visible wall: it keeps away from the walls beside
+// which it neither begins nor ends.
+TEST(TravelRules, RetractWhereTheyPassOverAVisibleWallThatTheyDoNotCross) {
+  const Rules ring(Ring("").GoRetracted(2, 2).Infill(2, 38).Read());
+
+  // Past the corner of the hole at 15, 15: by 0.07 mm, and by 0.7.
+  EXPECT_TRUE(ring.Retracts({10, 19.9}, {19.9, 10}));
+  EXPECT_TRUE(ring.Retracts({19.9, 10}, {10, 19.9}));
+  EXPECT_FALSE(ring.Retracts({10, 19}, {19, 10}));
+  // Along it, from the end of a line beside it to the next one.
+  EXPECT_FALSE(ring.Retracts({14.9, 16}, {14.9, 24}));
+  // From the wall itself.
+  EXPECT_FALSE(ring.Retracts({15, 20}, {5, 20}));
+}
+
 // Fact 16.
 TEST(TravelRules, NewTravelGoesAroundWallsWhereTheFileDoes) {
   const PrintTotals avoiding = RingPastTheHole("; avoid_crossing_perimeters = 1");

@@ -1,5 +1,5 @@
-// A layer has no more unretracted travel across outer walls than before, and none longer than the
-// longest before. The travel to a layer belongs to it.
+// A layer has no more unretracted travel across outer walls, or right over them, than before, and
+// none longer than the longest before. The travel to a layer belongs to it.
 
 #include <algorithm>
 
@@ -28,7 +28,7 @@ std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
   for (uint32_t link = first; link < end; ++link) {
     const TraceLink& traced = chunk.links[link];
     if (traced.first_move == traced.end_move) continue;
-    const double length = layer.CrossingLength(chunk, link, true, tails.At(link));
+    const double length = layer.OpenLengthOverWalls(chunk, link, tails.At(link));
     if (length <= 0) continue;
     OpenTravel travel{length, chunk.moves[traced.first_move].line, true};
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {

@@ -49,6 +49,24 @@ TEST(VerifyOpenTravels, WithinTheWallAreFree) {
   EXPECT_EQ(Broken(kHead + within, kHead + turned), "");
 }
 
+// Over the corner of a wall, though not across its middle.
+TEST(VerifyOpenTravels, NoRetractionIsLostOverAnOuterWallThatIsNotCrossed) {
+  const auto broken = [](const std::string& from, const std::string& to) {
+    const std::string one = kSquare + Line("Internal infill", "X5 Y5", from);
+    const std::string other = Line("Internal infill", to, "X5 Y20");
+    const std::string far =
+        Line("Internal infill", "X0 Y40", "X5 Y40") + "G1 X5 Y55 F9000\nG1 F1800\nG1 X6 Y55 E.3\n";
+    return Broken(kHead + one + far + other,
+                  kHead + one + With(other, Travel(to), "G1 " + to + " F9000\n") + far);
+  };
+
+  EXPECT_EQ(broken("X14.95 Y5", "X5 Y14.95"), "open_travel");
+  EXPECT_EQ(broken("X14 Y5", "X5 Y14"), "");
+  // Along it, as it begins and ends; and away from it.
+  EXPECT_EQ(broken("X9.95 Y12", "X9.95 Y18"), "");
+  EXPECT_EQ(broken("X10 Y12", "X5 Y18"), "");
+}
+
 TEST(VerifyOpenTravels, AcrossWallsGetNoLonger) {
   const std::string to_and_fro = With(kAcross, Travel("X30 Y15"), "G1 X30 Y15 F9000\n");
   const std::string longer =
