@@ -212,19 +212,19 @@ struct CauseWords {
 constexpr std::array<CauseWords, kCauses> kWords = {{
     {"stay beside commands that are not known here, the first of them $0",
      "without them in the slicer's custom G-code they could move"},
-    {"stay on their side of a change of tool or filament, the first of them in $1",
+    {"stay on one side of a change of tool or filament, the first of them in $1",
      "fewer changes in a layer let more of them move"},
     {"stay beside the wipe tower or a script, which nothing passes",
      "without the tower in the slicer's settings they could move"},
     {"are printed rising, as spiral vases and scarf seams are, or with the filament retracted, the "
      "first of them in $1",
      "with these off in the slicer they could move"},
-    {"stay within the label of their object, the first of which is $0",
+    {"stay within the label of an object, the first of which is $0",
      "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") they could "
      "mix"},
-    {"stay on their side of a line that nothing passes, the first of them $0",
+    {"stay on one side of a line that nothing passes, the first of them $0",
      "without such lines in the slicer's custom G-code they could move"},
-    {"stay on their side of a change of the fan",
+    {"stay on one side of a change of the fan",
      "--allow=fan_order or --policy=free lets them move, or the same fan speed for bridges and "
      "overhangs in the slicer"},
     {"are walls that touch and keep their order",
@@ -236,11 +236,19 @@ constexpr std::array<CauseWords, kCauses> kWords = {{
      "monotonic lines may mix with --policy=free or with another pattern in the slicer"},
     {"are supports and what rests on them, in the order in which the slicer has them",
      "no flag changes that"},
-    {"are alone in their layers", "nothing can change places there"},
+    {"are alone in a layer", "nothing can change places there"},
 }};
 
 std::string Counted(int64_t count, const char* what) {
   return absl::StrCat(count, " ", what, count == 1 ? "" : "s");
+}
+
+// "is alone" of "are alone", and so on.
+std::string OfOne(std::string_view holds) {
+  constexpr std::string_view kAre = "are ";
+  if (StartsWith(holds, kAre)) return absl::StrCat("is ", std::string(holds.substr(kAre.size())));
+  const size_t verb = holds.find(' ');
+  return absl::StrCat(std::string(holds.substr(0, verb)), "s", std::string(holds.substr(verb)));
 }
 
 std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
@@ -249,7 +257,7 @@ std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
   const std::string place = line ? Place(file, tally.at) : "";
   std::string text =
       absl::StrCat(Counted(tally.paths, "path"), " in ", Counted(tally.layers, "layer"), " ") +
-      absl::Substitute(kWords[cause].holds,
+      absl::Substitute(tally.paths == 1 ? OfOne(kWords[cause].holds) : kWords[cause].holds,
                        line ? absl::StrCat(Quoted(file, tally.at), " in ", place) : "", place);
   if (cause == kObjectLabel && !tallies.objects.empty()) {
     absl::StrAppend(&text, ", and whole objects keep their places, because ",
@@ -260,13 +268,16 @@ std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
 
 // What holds besides what can be counted by paths.
 std::string Remainder(const GcodeFile& file, Policy policy) {
-  if (IsFree(policy)) return "the rest may change places, but no other order found is faster";
+  const double least_seconds = LeastLayerSeconds(file.text);
+  if (IsFree(policy) || least_seconds <= 0) {
+    return absl::StrCat("the rest may change places, but no other order found is faster",
+                        policy == Policy::kSafe ? " with visible walls begun where they are" : "");
+  }
   return absl::StrFormat(
       "of the rest, no order found is faster that lets each island rest %.4g s, or as long as in "
       "the file, before it is printed on%s; --policy=free gives that up, and a lower least layer "
       "time in the slicer a part of it",
-      LeastLayerSeconds(file.text),
-      policy == Policy::kSafe ? ", and visible walls begin where they do" : "");
+      least_seconds, policy == Policy::kSafe ? ", and visible walls begin where they do" : "");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/stated_progress.h"
 #include "tests/client/gcode/labels/pillars.h"
@@ -49,6 +50,16 @@ TEST(DescribeBarriers, SayWhatHoldsAndWhatWouldFree) {
   EXPECT_THAT(BarriersOf(Lines("T1\n")), HasSubstr("change of tool"));
 }
 
+TEST(DescribeBarriers, SpeakOfOnePathAndOfNoRest) {
+  const std::string alone =
+      ";LAYER_CHANGE\nG1 Z.8 F9000\nG1 X0 Y0\n;TYPE:Internal infill\nG1 X10 Y0 E.5 F1200\n";
+  EXPECT_THAT(BarriersOf(Lines("") + alone), HasSubstr("1 path in 1 layer is alone in a layer"));
+  EXPECT_THAT(BarriersOf(Lines("") + alone + absl::StrReplaceAll(alone, {{"Z.8", "Z1"}})),
+              HasSubstr("2 paths in 2 layers are alone in a layer"));
+  EXPECT_THAT(BarriersOf(Lines("") + "; slow_down_layer_time = 0\n"),
+              AllOf(Not(HasSubstr("rest 0 s")), HasSubstr("no other order found is faster")));
+}
+
 TEST(DescribeBarriers, NameTheFlag) {
   const std::string fans = Lines("M106 S90\n");
   EXPECT_THAT(BarriersOf(fans), HasSubstr("--allow=fan_order"));
@@ -66,7 +77,7 @@ TEST(DescribeBarriers, SayWhyObjectsStay) {
   print.one_by_one = false;
   print.order = {0, 2, 0, 3};
   EXPECT_THAT(BarriersOf(Text(print, testing::Notations()[1])),
-              AllOf(HasSubstr("label of their object"), HasSubstr("printed twice")));
+              AllOf(HasSubstr("label of an object"), HasSubstr("printed twice")));
 }
 
 TEST(DescribeProgressFaults, SayWhatCannotBeTrue) {
