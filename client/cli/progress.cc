@@ -15,8 +15,7 @@ namespace {
 constexpr absl::Duration kBarInterval = absl::Milliseconds(100);
 constexpr absl::Duration kLineInterval = absl::Seconds(5);
 
-// Of its work, after which a search tells how long it takes: the first layers that are done are the
-// smallest ones, and others are half done by then.
+// Of its work, after which a search tells how long it takes, behind the first layer.
 constexpr double kTellingShare = 0.1;
 
 // Returns to the first column and clears the line.
@@ -30,26 +29,27 @@ Progress::Style Progress::StyleFor(bool quiet) {
 }
 
 Progress::Progress(Style style, std::string label, uint64_t layers)
-    : style_(style),
-      label_(std::move(label)),
-      layers_(layers),
-      began_(absl::Now()),
-      shown_(began_) {}
+    : style_(style), label_(std::move(label)), layers_(layers), began_(absl::Now()) {}
 
 Progress::~Progress() {
   if (bar_drawn_) Print(stderr, kClearLine);
 }
 
-void Progress::Take(const v1::LayerResult& layer) {
+void Progress::Take(const v1::LayerResult& layer) { Take(layer, absl::Now() - began_); }
+
+void Progress::Take(const v1::LayerResult& layer, absl::Duration elapsed) {
   ++done_;
   done_work_ += WorkOf(layer.index());
+  if (done_ == 1) {
+    first_seconds_ = absl::ToDoubleSeconds(elapsed);
+    first_work_ = done_work_;
+  }
   given_mm_ += layer.given().total_mm() + layer.cleaning_given_mm();
   travel_mm_ += layer.travel().total_mm() + layer.cleaning_mm();
-  const absl::Time now = absl::Now();
   const bool bar = style_ == Style::kBar;
-  if (style_ == Style::kNone || now - shown_ < (bar ? kBarInterval : kLineInterval)) return;
-  shown_ = now;
-  const std::string text = Text(now - began_, TerminalWidth(stderr) - 1);
+  if (style_ == Style::kNone || elapsed - shown_ < (bar ? kBarInterval : kLineInterval)) return;
+  shown_ = elapsed;
+  const std::string text = Text(elapsed, TerminalWidth(stderr) - 1);
   Print(stderr, bar ? kClearLine + text : text + "\n");
   bar_drawn_ = bar;
 }
@@ -58,13 +58,16 @@ double Progress::WorkOf(uint64_t layer) const {
   return layer < work_.layers.size() ? work_.layers[layer] : 1;
 }
 
-// Of this search, and of what follows; unset if too little is done to tell.
+// Of this search, and of what follows; unset if too little is done to tell. All layers are searched
+// side by side before the first one is done, so only what is done since then tells how fast the
+// others will be.
 std::optional<double> Progress::SecondsLeft(double elapsed_seconds) const {
   double all = 0;
   for (uint64_t layer = 0; layer < layers_; ++layer) all += WorkOf(layer);
-  if (done_work_ < kTellingShare * all) return std::nullopt;
-  const double whole = elapsed_seconds * all / done_work_;
-  return std::max(whole - elapsed_seconds, 0.0) + whole * work_.stages_behind;
+  const double since = done_work_ - first_work_;
+  if (since <= 0 || since < kTellingShare * all) return std::nullopt;
+  const double left = (all - done_work_) * (elapsed_seconds - first_seconds_) / since;
+  return std::max(left, 0.0) + (elapsed_seconds + left) * work_.stages_behind;
 }
 
 std::string Progress::Text(absl::Duration elapsed, int width) const {

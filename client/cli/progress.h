@@ -32,8 +32,10 @@ class Progress {
   // What the layers have to be weighed by; without it all are alike, and nothing follows.
   void Expect(SearchWork work) { work_ = std::move(work); }
 
-  // Counts one more layer. Shows it at most ten times a second, as lines every few seconds.
+  // Counts one more layer, done now or after `elapsed`. Shows it at most ten times a second, as
+  // lines every few seconds.
   void Take(const v1::LayerResult& layer);
+  void Take(const v1::LayerResult& layer, absl::Duration elapsed);
 
   // The text to show after `elapsed`: `ni2opt  [####----] 50/100 layers, travel 31.2 % shorter, 5 s
   // left`. The bar appears only with kBar, and fits into `width` columns.
@@ -47,10 +49,12 @@ class Progress {
   const std::string label_;
   const uint64_t layers_;
   const absl::Time began_;
-  absl::Time shown_;
+  absl::Duration shown_;  // after what time, last
   SearchWork work_;
   uint64_t done_ = 0;
   double done_work_ = 0;
+  double first_seconds_ = 0;  // until the first layer was done
+  double first_work_ = 0;
   double given_mm_ = 0;
   double travel_mm_ = 0;
   bool bar_drawn_ = false;

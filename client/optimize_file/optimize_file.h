@@ -46,7 +46,7 @@ using FileResult = std::variant<T, FileFault>;
 // What a search has to do.
 struct SearchWork {
   std::vector<double> layers;  // [layer] its share, in paths and points
-  int stages_behind = 0;       // what follows takes about as long as this search, so many times
+  double stages_behind = 0;    // what follows takes as long as this search, about so many times
 };
 
 // Called while the service searches, on the calling thread. Each may be empty.
@@ -84,7 +84,7 @@ struct SearchOptions {
 
   SearchProgress progress = {};
 
-  int stages_behind = 0;  // see SearchWork
+  double stages_behind = 0;  // see SearchWork
 };
 
 // Runs one search of `job`. Errors are the service's.

@@ -15,35 +15,43 @@ v1::LayerResult Layer(double given, double travel) {
 TEST(Progress, BarShowsLayersGainAndTimeLeft) {
   Progress progress(Progress::Style::kBar, "tabu", 4);
   EXPECT_EQ(progress.Text(absl::Seconds(1), 40), "tabu  [---------------------] 0/4 layers");
-  progress.Take(Layer(100, 70));
+  progress.Take(Layer(100, 70), absl::Seconds(4));
+  EXPECT_EQ(progress.Text(absl::Seconds(4), 70),
+            "tabu  [#######------------------------] 1/4 layers, travel 30.0 % less");
+  progress.Take(Layer(100, 70), absl::Seconds(7));
 
-  EXPECT_EQ(progress.Text(absl::Seconds(10), 70),
-            "tabu  [#####---------------] 1/4 layers, travel 30.0 % less, 30 s left");
-  EXPECT_EQ(progress.Text(absl::Seconds(10), 30), "tabu  1/4 layers, travel 30.0 ");
+  EXPECT_EQ(progress.Text(absl::Seconds(7), 70),
+            "tabu  [#########----------] 2/4 layers, travel 30.0 % less, 6.0 s left");
+  EXPECT_EQ(progress.Text(absl::Seconds(7), 30), "tabu  2/4 layers, travel 30.0 ");
 }
 
-TEST(Progress, TimeLeftGoesByWorkAndByWhatFollows) {
+// Layers are searched side by side until the first one is done, here for 20 s; then a tenth of the
+// work takes 2 s. So the search takes 38 s, and two stages behind it as long again.
+TEST(Progress, TimeLeftGoesByWorkSinceTheFirstLayerAndByWhatFollows) {
   Progress progress(Progress::Style::kLines, "auto", 3);
   progress.Expect({{10, 10, 80}, 2});
-  v1::LayerResult layer = Layer(0, 0);
-  progress.Take(layer);
-  // A tenth in 2 s: 20 s in all, and two stages as long.
-  EXPECT_EQ(progress.Text(absl::Seconds(2), 80), "auto: 1/3 layers, 58 s left");
+  progress.Take(Layer(0, 0), absl::Seconds(20));
+  progress.Take(Layer(0, 0), absl::Seconds(22));
+  EXPECT_EQ(progress.Text(absl::Seconds(22), 80), "auto: 2/3 layers, 1 min 32 s left");
 }
 
 TEST(Progress, TellsNoTimeLeftAfterASmallLayerAlone) {
   Progress progress(Progress::Style::kLines, "auto", 3);
-  progress.Expect({{1, 500, 499}, 2});
-  progress.Take(Layer(0, 0));
+  progress.Expect({{500, 1, 499}, 2});
+  progress.Take(Layer(0, 0), absl::Seconds(12));
+  v1::LayerResult small = Layer(0, 0);
+  small.set_index(1);
+  progress.Take(small, absl::Seconds(13));
 
-  EXPECT_EQ(progress.Text(absl::Seconds(13), 80), "auto: 1/3 layers");
+  EXPECT_EQ(progress.Text(absl::Seconds(13), 80), "auto: 2/3 layers");
 }
 
 TEST(Progress, LinesHaveNoBar) {
-  Progress progress(Progress::Style::kLines, "tabu", 2);
-  progress.Take(Layer(0, 0));
+  Progress progress(Progress::Style::kLines, "tabu", 3);
+  progress.Take(Layer(0, 0), absl::ZeroDuration());
+  progress.Take(Layer(0, 0), absl::Seconds(10));
 
-  EXPECT_EQ(progress.Text(absl::Seconds(10), 80), "tabu: 1/2 layers, 10 s left");
+  EXPECT_EQ(progress.Text(absl::Seconds(10), 80), "tabu: 2/3 layers, 10 s left");
 }
 
 }  // namespace
