@@ -42,7 +42,11 @@ void Slope(const Position& from, const Link& rise, std::vector<Position>& travel
 NewLink LinkComposer::Compose() && {
   if (form_.given && !form_.hidden) {
     KeepGiven();
-  } else if (form_.boundary) {
+    return std::move(link_);
+  }
+  const uint32_t next = from_.placement().block + 1;
+  if (next < file_.blocks.size()) left_ = ReadLink(file_, next);
+  if (form_.boundary) {
     ComposeBoundary();
   } else {
     ComposePlain();
@@ -124,15 +128,12 @@ void LinkComposer::SetTravelState(const Link& like) {
 
 // The link that leads away from the path in the file, if what it does there fits here.
 std::optional<Link> LinkComposer::OwnDeparture(const Link& like) const {
-  const uint32_t next = from_.placement().block + 1;
-  if (next >= file_.blocks.size()) return std::nullopt;
-  Link own = ReadLink(file_, next);
-  if (!donors_.MayFollow(next)) {
+  if (!left_) return std::nullopt;
+  if (!donors_.MayFollow(from_.placement().block + 1)) {
     // At marks the wipe alone is of the path.
-    return form_.wipes && like.arrival >= 0 ? WithWipeOf(like, own) : std::nullopt;
+    return form_.wipes && like.arrival >= 0 ? WithWipeOf(like, *left_) : std::nullopt;
   }
-  if (own.arrival < 0 || !own.SameRetraction(like)) return std::nullopt;
-  return own;
+  return left_->arrival >= 0 && left_->SameRetraction(like) ? left_ : std::nullopt;
 }
 
 // What leads away from the path; returns the link that it is like.
@@ -167,14 +168,12 @@ Link LinkComposer::Depart(const Link& like) {
 // A path that stands last before marks in the file, or here, is left as it is there, and one that
 // begins elsewhere as it would be left there.
 void LinkComposer::DepartAsOwn() {
-  const uint32_t next = from_.placement().block + 1;
-  if (!(from_.as_given() || form_.turned_departure) || next >= file_.blocks.size()) return;
+  if (!left_ || !(from_.as_given() || form_.turned_departure)) return;
   if ((from_.block().flags & kBlockGoesOn) != 0) return;  // along the path: GoOn
-  const Link own = ReadLink(file_, next);
-  const LinkStep* departure = DepartureOf(own);
+  const LinkStep* departure = DepartureOf(*left_);
   if (departure == nullptr) return;
   if (from_.as_given()) {
-    if (PullsBackBehind(own, *departure)) Follow(*departure);
+    if (PullsBackBehind(*left_, *departure)) Follow(*departure);
     return;
   }
   Position to = InWords(*form_.turned_departure, link_.machine().UnitMm());
@@ -184,8 +183,8 @@ void LinkComposer::DepartAsOwn() {
 
 // A path that the file goes on along without filament is gone on along as far wherever it ends.
 void LinkComposer::GoOn() {
-  const std::optional<LinkStep> step = ReadGoingOn(file_, from_.placement().block);
-  if (!step) return;
+  const LinkStep* step = left_ ? GoingOnAlong(from_.block(), *left_) : nullptr;
+  if (step == nullptr) return;
   for (const Position& at : from_.Retrace(step->travel_mm)) {
     link_.Travel(step->line.Raw(file_.text), {at.x, at.y, link_.at().z}, step->feed);
   }

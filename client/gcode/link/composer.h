@@ -79,6 +79,7 @@ class LinkComposer {
   const PlacedPath& from_;
   const PlacedPath& to_;
   const LinkForm& form_;
+  std::optional<Link> left_;  // behind `from` in the file
   NewLink link_;
 };
 

@@ -30,33 +30,32 @@ LayerDepartures::LayerDepartures(const GcodeFile& file, const Layer& layer,
 }
 
 void LayerDepartures::Note(uint32_t block) {
+  if (block + 1 >= file_.blocks.size()) return;
+  const bool wipes = file_.WipedBehind(block);
+  if (!wipes && !MayDepart(file_, block + 1)) return;
   const MachineState& mode = file_.modes[file_.blocks[block].mode];
-  if (const std::optional<LinkStep> step = ReadGoingOn(file_, block)) {
+  const Link link = ReadLink(file_, block + 1);
+  if (const LinkStep* step = GoingOnAlong(file_.blocks[block], link)) {
     departures_[block].mm = step->travel_mm * mode.UnitMm();
     departures_[block].as_given = mode.InMm(step->to);
     return;
   }
   Departure noted;
-  if (!file_.WipedBehind(block)) {
-    if (block + 1 >= file_.blocks.size() || !MayDepart(file_, block + 1)) return;
-    const Link link = ReadLink(file_, block + 1);
-    const LinkStep* step = DepartureOf(link);
-    if (step == nullptr) return;
-    if (!donors_.MayFollow(block + 1) && !PullsBackBehind(link, *step)) return;
-    departures_[block] = {.mm = step->travel_mm * mode.UnitMm(),
-                          .as_given = mode.InMm(step->to),
-                          .departs_to = mode.InMm(step->to),
-                          .turns = !link.retracts() || PullsBackBehind(link, *step),
-                          .departs = true,
-                          .retracts = link.retracts()};
+  const LinkStep* aside = DepartureOf(link);
+  const bool pulls_behind = aside != nullptr && PullsBackBehind(link, *aside);
+  if (aside != nullptr) noted.departs_to = mode.InMm(aside->to);
+  if (!wipes) {
+    if (aside == nullptr || !(pulls_behind || donors_.MayFollow(block + 1))) return;
+    noted.mm = aside->travel_mm * mode.UnitMm();
+    noted.as_given = *noted.departs_to;
+    noted.turns = pulls_behind || !link.retracts();
+    noted.departs = true;
+    noted.retracts = link.retracts();
+    departures_[block] = noted;
     return;
   }
   noted.wipes = true;
-  const Link link = ReadLink(file_, block + 1);
-  if (const LinkStep* step = DepartureOf(link)) {
-    noted.departs_to = mode.InMm(step->to);
-    noted.turns = PullsBackBehind(link, *step);
-  }
+  noted.turns = pulls_behind;
   for (const LinkStep& step : link.steps) {
     if (step.kind == StepKind::kFilament && noted.mm == 0) noted.stands = true;
     if (step.kind != StepKind::kWipe) continue;

@@ -150,13 +150,12 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   return link;
 }
 
-std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block) {
-  const bool goes_on = (file.blocks[block].flags & kBlockGoesOn) != 0;
-  if (!goes_on || block + 1 >= file.blocks.size()) return std::nullopt;
-  for (const LinkStep& step : ReadLink(file, block + 1).steps) {
-    if (step.kind == StepKind::kTravel) return step;
-  }
-  return std::nullopt;
+const LinkStep* GoingOnAlong(const Block& block, const Link& link) {
+  if ((block.flags & kBlockGoesOn) == 0) return nullptr;
+  const auto first = std::find_if(link.steps.begin(), link.steps.end(), [](const LinkStep& step) {
+    return step.kind == StepKind::kTravel;
+  });
+  return first != link.steps.end() ? &*first : nullptr;
 }
 
 bool MayDepart(const GcodeFile& file, size_t index) {

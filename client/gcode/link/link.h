@@ -123,10 +123,10 @@ std::optional<Link> WithWipeOf(Link form, const Link& own);
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);
 
-// The move without filament that continues along block `block`, a closed one, as in the file; unset
-// for most blocks. CuraEngine wipes its outer walls so. It belongs to the end of the path, wherever
-// that end is.
-std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block);
+// The step of `link`, the one behind `block`, a closed path, that continues along it without
+// filament; null for most. CuraEngine wipes its outer walls so. It belongs to the end of the path,
+// wherever that end is.
+const LinkStep* GoingOnAlong(const Block& block, const Link& link);
 
 }  // namespace traverse::gcode
 

@@ -1,7 +1,6 @@
 #include "client/gcode/link/link_looks.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "client/gcode/link/link.h"
@@ -15,10 +14,12 @@ namespace {
 // if it is open, else straight.
 std::vector<Vertex> LineTo(const GcodeFile& file, uint32_t block, bool straight) {
   const MachineState& mode = file.modes[file.blocks[block].mode];
-  const std::optional<LinkStep> going_on = ReadGoingOn(file, block - 1);
-  std::vector<Vertex> line = {mode.InMm(going_on ? going_on->to : file.blocks[block - 1].last)};
-  bool skips = going_on.has_value();
-  for (const LinkStep& step : ReadLink(file, block).steps) {
+  const Link link = ReadLink(file, block);
+  const LinkStep* going_on = GoingOnAlong(file.blocks[block - 1], link);
+  std::vector<Vertex> line = {
+      mode.InMm(going_on != nullptr ? going_on->to : file.blocks[block - 1].last)};
+  bool skips = going_on != nullptr;
+  for (const LinkStep& step : link.steps) {
     if (straight) break;
     if (IsXyMotion(step.kind) && !std::exchange(skips, false)) line.push_back(mode.InMm(step.to));
   }
