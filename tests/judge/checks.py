@@ -434,20 +434,22 @@ def commands(side, first, end):
 
 
 def low_travel(side):
-    """(count, one line) of retracted travel of 2 mm and more that is no higher than what was printed last."""
-    count, line, height = 0, 0, 0.0
+    """(low, all, a line) of retracted travel of 2 mm and more; low is what is no higher than what was printed last."""
+    low, count, line, height = 0, 0, 0, 0.0
     for move in side.moves:
         if move.deposits:
             height = max(move.z0, move.z1)
-        elif move.length > 2 and move.retracted > 0.02 and move.e == 0 and min(move.z0, move.z1) < height + 0.05:
-            count, line = count + 1, move.line
-    return count, line
+        elif move.length > 2 and move.retracted > 0.02 and move.e == 0:
+            count += 1
+            if min(move.z0, move.z1) < height + 0.05:
+                low, line = low + 1, move.line
+    return low, count, line
 
 
 def lifts(before, after, options):
     """Travel that is retracted stays as high above the print as such travel of the file is."""
-    (old, _), (new, line) = low_travel(before), low_travel(after)
-    if new > 1.1 * old + 2:
+    (old, old_count, _), (new, new_count, line) = low_travel(before), low_travel(after)
+    if new > 1.1 * old * max(1.0, new_count / max(old_count, 1)) + 2:
         yield f"lifts: {old} retracted moves at the height of the print became {new}; line {line}"
 
 

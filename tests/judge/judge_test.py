@@ -165,6 +165,14 @@ class Checks(unittest.TestCase):
 
         self.assertIn("lifts", faults(before, [line for line in before if line != lift]))
 
+    def test_more_travel_of_a_file_without_lifts_lost_none(self):
+        pulled, pushed = "G1 E-.8 F2100", "G1 E.8"
+        here, there = block(10, 0.2), block(40, 0.2)
+        closed = [pulled, there[0], pushed] + there[1:] + [pulled, here[0], pushed] + here[1:]
+        before = HEAD + layer(0.2, (closed + there + here) * 4)
+
+        self.assertNotIn("lifts", faults(before, HEAD + layer(0.2, closed * 8), "free"))
+
     def test_a_lost_wipe_is_found(self):
         wiped = block(10, 0.2) + ["G1 X15 Y10 E-.8", "G1 X40 Y40 F9000", "G1 E.8"]
         before = HEAD + layer(0.2, wiped * 4)
