@@ -254,7 +254,8 @@ def walls_and_tops(side):
             if z != height:
                 outer, layer, height = {}, set(), z
             for cell in cells_of(move, CELL_MM):
-                layer.add(cell)
+                if is_of_part(move.state):
+                    layer.add(cell)
                 if is_outer(move.state):
                     outer.setdefault(cell, []).append(move)
         elif move.length > 3 and move.retracted < 0.02 and move.e == 0:
@@ -264,6 +265,12 @@ def walls_and_tops(side):
             passed = list(cells_of(move, CELL_MM))[3:-3]
             over_top += CELL_MM * sum(1 for cell in passed if cell in layer and tops.get(cell) == height)
     return crossings, longest, over_top
+
+
+def is_of_part(state):
+    """What is thrown away shows nothing."""
+    feature = str(state[7]).lower()
+    return not any(word in feature for word in ("support", "skirt", "brim", "tower"))
 
 
 def is_outer(state):

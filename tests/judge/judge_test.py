@@ -123,6 +123,17 @@ class Checks(unittest.TestCase):
             along = [f"G1 X45 Y{10 + beside} F9000", f"G1 X48 Y{10 + beside}", f"G1 X41.5 Y{10 + beside}"]
             self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, along)), found)
 
+    def test_open_travel_over_a_surface_is_found_and_over_supports_is_not(self):
+        for feature, found in (("Top solid infill", True), ("Support material", False)):
+            lines = [f";TYPE:{feature}"]
+            for y in range(10, 30):
+                begin, end = (10, 40) if y % 2 == 0 else (40, 10)
+                lines += [f"G1 X{begin} Y{y / 2} F9000", "G1 F1800", f"G1 X{end} Y{y / 2} E.9"]
+            before = HEAD + layer(0.2, ["G1 E-.8 F2100", "G1 X10 Y5 F9000", "G1 E.8"] + lines)
+            across = ["G1 X11 Y6 F9000", "G1 X39 Y14", "G1 X40 Y14.5"]
+
+            self.assertEqual("stringing" in faults(before, before + across, "free"), found, feature)
+
     def test_a_gap_may_go_to_lines_of_another_width(self):
         def loop(order, cut):
             """A square whose sides have widths in turn, begun at side order[0] and ended `cut` mm early."""
