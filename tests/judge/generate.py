@@ -201,7 +201,7 @@ class Writer:
         if len(outlines) == 1 and len(outlines[0]) == 4:
             x = min(xs) + 1
             while x < max(xs) - 0.8:
-                ends = [(x, min(ys) + 0.9), (x, max(ys) - 0.9)]
+                ends = [(x, min(ys) + WIDTH), (x, max(ys) - WIDTH)]
                 self.path(2, ends if self.rng.random() < 0.5 else ends[::-1], 2400)
                 x += 1.5
 
