@@ -9,6 +9,7 @@ doublings. The environment names the binaries: TRAVERSE, and optionally TRAVERSE
 """
 import argparse
 import io
+import json
 import os
 import random
 import resource
@@ -155,25 +156,87 @@ def plates(n):
     return archive.getvalue()
 
 
-def damat(n):
-    return "\n".join(["Z:1"] + [f"{x} {y};{x + 1} {y}" for x, y in spots(n)])
+def progress(n):
+    return one_layer(";TYPE:Internal infill\n" + "".join(f"M73 P{i * 100 // n} R{(n - i) // 60}\n" + line(x, y, x + 2, y)
+                                                        for i, (x, y) in enumerate(spots(n))))
+
+
+def thumbnails(n):
+    text = ("; " + "A" * 76 + "\n") * 20
+    return HEAD + f"; thumbnail begin 16x16 1520\n{text}; thumbnail end\n" * n + layers(2)[len(HEAD):]
+
+
+def nearly_touching(n):
+    """Squares 0.4 mm apart, island by island."""
+    columns = int(n ** 0.5) + 1
+    return one_layer(";TYPE:External perimeter\n" + "".join(square(i % columns * 2, i // columns * 2, 1.6) for i in range(n)))
+
+
+def job(layers_of):
+    """A job of layers as the service has it."""
+    return json.dumps({"options": {"seed": 1}, "layers": [{"id": i + 1, **layer} for i, layer in enumerate(layers_of)]})
+
+
+def square_points(x, y, side=1):
+    return {"points": [x, y, x + side, y, x + side, y + side, x, y + side]}
+
+
+def json_layers(n):
+    return job([{"islands": [{"contours": [square_points(x, y) for x, y in spots(3, i)]}]} for i in range(n)])
+
+
+def json_islands(n):
+    return job([{"islands": [{"contours": [square_points(x, y)]} for x, y in spots(n)]}])
+
+
+def json_contours(n):
+    return job([{"islands": [{"contours": [square_points(x, y) for x, y in spots(n)]}]}])
+
+
+def json_rasters(n):
+    return job([{"islands": [{"rasters": [{"points": [x, y, x + 2, y]} for x, y in spots(n)]}]}])
+
+
+def json_points(n):
+    return job([{"islands": [{"contours": [{"points": [value for i in range(n) for value in (i % 300, i * 7 % 299)]}]}]}])
+
+
+def json_order(n):
+    """A plan whose paths must come one after the other, as pairs say."""
+    root = {"any_order": {"children": list(range(1, n + 1)), "before": [{"first": i, "second": i + 1} for i in range(n - 1)]}}
+    contours = [{"contour": square_points(x, y)} for x, y in spots(n)]
+    return job([{"plan": {"paths": contours, "nodes": [root] + [{"path": i} for i in range(n)]}}])
+
+
+def json_deep(n):
+    """Brackets in brackets, in a field that nobody knows."""
+    return job([{"islands": [{"contours": [square_points(5, 5)]}]}])[:-1] + ', "remark": ' + "[" * n + "]" * n + "}"
+
+
+def json_walls(n):
+    walls = [{"points": [0, i * 300 / n, 300, i * 300 / n]} for i in range(n)]
+    cost = {"time": {"speed_mm_s": 100, "accel_mm_s2": 1000, "retraction_seconds": 0.2, "crossing_seconds": 0.5}}
+    return job([{"islands": [{"contours": [square_points(x, y) for x, y in spots(200)]}], "walls": walls, "cost": cost}])
 
 
 DIMENSIONS = {made.__name__: made for made in (
     paths, layers, loops, walls_and_infill, nested_loops, tools, labels, features, settings, comments, configuration, long_lines,
-    long_moves, corners, waits, travel_bends, crossed_walls, same_place, arcs, plates)}
+    long_moves, corners, waits, travel_bends, crossed_walls, same_place, arcs, plates, progress, thumbnails, nearly_touching)}
 DIMENSIONS["crossing_infill"] = crossings(["Internal infill"])
 DIMENSIONS["crossing_walls"] = crossings(["External perimeter"])
 DIMENSIONS["crossing_both"] = crossings(["External perimeter", "Internal infill"])
 MOST = {"plates": 990}
 SUFFIX = {"plates": ".gcode.3mf"}
+JOBS = (json_layers, json_islands, json_contours, json_rasters, json_points, json_order, json_deep, json_walls)
+DIMENSIONS.update({made.__name__: made for made in JOBS})
+SUFFIX.update({made.__name__: ".json" for made in JOBS})
 
 
 def shuffled(text):
     """The same with its paths in another order: what a verifier is given that was not made by this program."""
-    if isinstance(text, bytes):
-        return text
     begin = "G1 E-1 F2100\n"
+    if isinstance(text, bytes) or begin not in text:
+        return text
     parts = text.split(begin)
     middle = parts[1:-1]
     random.Random(5).shuffle(middle)
@@ -199,8 +262,8 @@ class Call:
     """A call of the gateway: what its process took meanwhile."""
     gateway = None
 
-    def __init__(self, path, both=False):
-        self.path, self.both = path, both
+    def __init__(self, path, both=False, as_json=False):
+        self.path, self.both, self.as_json = path, both, as_json
 
     def run(self, given, other, made):
         if Call.gateway is None:
@@ -211,6 +274,8 @@ class Call:
             file.write("5")
         before = self.ticks(pid)
         forms = ["-F", f"original=@{given}", "-F", f"optimised=@{other}"] if self.both else ["-F", f"file=@{given}"]
+        if self.as_json:
+            forms = ["-H", "Content-Type: application/json", "--data-binary", f"@{given}"]
         subprocess.run(["curl", "--silent", "--max-time", "40", "-o", made, *forms, f"http://127.0.0.1:{Call.gateway.http_port}{self.path}"],
                        check=False)
         with open(f"/proc/{pid}/status", encoding="ascii") as file:
@@ -230,12 +295,19 @@ CALLS = {
     "auto": Command("optimize", "GIVEN", "--policy=balanced", "--deadline=1s", "-o", "MADE", "--quiet"),
     "verify": Command("verify", "GIVEN", "OTHER"),
     "free": Command("verify", "--policy=free", "--allow=infill_order,wall_order,fan_order,wipes", "GIVEN", "OTHER"),
+    "compare": Command("compare", "GIVEN", "--strategies=none,greedy"),
     "convert": Command("convert", "GIVEN", "-o", "MADE"),
+}
+# Of jobs.
+JOB_CALLS = {
+    "job": Command("optimize", "GIVEN", "--strategy=greedy", "--json=MADE", "--quiet"),
+    "job_auto": Command("optimize", "GIVEN", "--deadline=1s", "--json=MADE", "--quiet"),
 }
 GATEWAY_CALLS = {
     "/v1/gcode": Call("/v1/gcode?strategy=greedy&policy=free"),
     "/v1/inspect": Call("/v1/inspect"),
     "/v1/verify": Call("/v1/verify", both=True),
+    "/v1/optimize": Call("/v1/optimize?deadline=30s", as_json=True),
 }
 
 
@@ -279,7 +351,7 @@ def main():
     arguments.add_argument("--seconds", type=float, default=3)
     arguments.add_argument("--least", type=float, default=0.15)
     arguments.add_argument("--only", default=",".join(DIMENSIONS))
-    calls = {**CALLS, **(GATEWAY_CALLS if "TRAVERSE_GATEWAY" in os.environ else {})}
+    calls = {**CALLS, **JOB_CALLS, **(GATEWAY_CALLS if "TRAVERSE_GATEWAY" in os.environ else {})}
     arguments.add_argument("--calls", default=",".join(calls))
     given = arguments.parse_args()
     names = given.calls.split(",")
@@ -289,6 +361,10 @@ def main():
         for dimension in given.only.split(","):
             row = f"{dimension:18}"
             for name in names:
+                of_jobs = name in JOB_CALLS or name == "/v1/optimize"
+                if of_jobs != (SUFFIX.get(dimension) == ".json"):
+                    row += f"{'-':28}"
+                    continue
                 text, bad = cell(grow(dimension, calls[name], given.seconds, folder), given.least)
                 row += f"{text:28}"
                 if bad:

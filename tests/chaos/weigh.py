@@ -1,6 +1,8 @@
 """Weighs what a gateway counts for files of every make against the memory that it then takes.
 
-    weigh.py [--bytes=LENGTH of each file, 6 MB] [--only=KIND,...] [--calls=PATH,...]
+    weigh.py [--bytes=LENGTH of each file, 6 MB] [--only=KIND,...] [--as=FORM,...] [--calls=PATH,...]
+
+A form is how the file comes: as it is (plain), or packed in gzip, xz, bgcode or a 3mf; its length is what is unpacked.
 
 Each file goes to a gateway of its own, whose metric traverse_gateway_work_bytes is what is counted. What it takes is the most
 memory of its own that the process has meanwhile, less what it had before. `<` marks what takes more than is counted, `>` what is
@@ -9,12 +11,16 @@ TRAVERSE and TRAVERSE_GATEWAY.
 """
 import argparse
 import gzip
+import io
+import itertools
+import lzma
 import os
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+import zipfile
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
 import grow
@@ -63,7 +69,26 @@ KINDS.update({name: grow.DIMENSIONS[name] for name in (
     "paths", "layers", "loops", "walls_and_infill", "tools", "labels", "settings", "comments", "corners", "travel_bends", "long_lines",
     "crossing_infill", "crossing_both", "same_place", "arcs", "waits")})
 CALLS = ["/v1/gcode?policy=free", "/v1/gcode?strategy=greedy", "/v1/inspect", "/v1/verify"]
-PACKED = {"gzip": gzip.compress}
+
+
+def as_bgcode(content):
+    with tempfile.TemporaryDirectory() as folder:
+        given, made = os.path.join(folder, "given.gcode"), os.path.join(folder, "made.bgcode")
+        with open(given, "wb") as file:
+            file.write(content)
+        subprocess.run([os.environ["TRAVERSE"], "convert", given, "-o", made], check=True)
+        with open(made, "rb") as file:
+            return file.read()
+
+
+def as_3mf(content):
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("Metadata/plate_1.gcode", content)
+    return archive.getvalue()
+
+
+FORMS = {"plain": bytes, "gzip": gzip.compress, "xz": lzma.compress, "bgcode": as_bgcode, "3mf": as_3mf}
 
 
 def of_length(kind, length):
@@ -122,12 +147,14 @@ def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("--bytes", type=int, default=6_000_000)
     arguments.add_argument("--only", default=",".join(KINDS))
+    arguments.add_argument("--as", dest="forms", default="plain")
     arguments.add_argument("--calls", default=",".join(CALLS))
     given = arguments.parse_args()
     faults = 0
-    for kind in given.only.split(","):
+    for kind, form in itertools.product(given.only.split(","), given.forms.split(",")):
         content = of_length(kind, given.bytes)
-        row = f"{kind:22} {len(content) / 1e6:5.1f} MB "
+        row = f"{kind:22} {form:7} {len(content) / 1e6:5.1f} MB "
+        content = FORMS[form](content)
         for path in given.calls.split(","):
             weight = Weight(content, path)
             low = weight.taken > weight.counted
