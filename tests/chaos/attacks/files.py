@@ -114,7 +114,7 @@ def rubbish(server, end):
     until(end, patiently(step))
 
 
-def posts(makers, callers=4, path="/v1/gcode?strategy=greedy"):
+def posts(makers, callers=4, path="/v1/gcode?strategy=greedy", content_type="application/octet-stream"):
     """Files, one after the other, by several callers at a time, each of whom waits for a moment and goes."""
     def attack(server, end):
         bodies = [maker() for maker in makers]
@@ -124,7 +124,8 @@ def posts(makers, callers=4, path="/v1/gcode?strategy=greedy"):
             while time.monotonic() < end:
                 connection = http.client.HTTPConnection("127.0.0.1", server.http_port, timeout=3)
                 try:
-                    connection.request("POST", path, dice.choice(bodies), {"Authorization": f"Bearer {number}"})
+                    connection.request("POST", path, dice.choice(bodies),
+                                       {"Authorization": f"Bearer {number}", "Content-Type": content_type})
                     connection.getresponse().read()
                 except (OSError, http.client.HTTPException):
                     time.sleep(0.02)
@@ -165,6 +166,11 @@ def gzip_bomb():
 
 def gzip_text():
     return gzip.compress(infill(20) + b"G1X1Y1E1\n" * 3_000_000, 9)
+
+
+def many_parts():
+    """A form of empty fields."""
+    return b"--b\r\nContent-Disposition: form-data; name=\"a\"\r\n\r\n\r\n" * 200_000 + b"--b--\r\n"
 
 
 def dense():

@@ -96,10 +96,35 @@ def walls():
     }).replace('"WALL"', '{"points": [' + points + "]}").encode()
 
 
+def faulty_layers():
+    """Partial answers say of each layer what is wrong with it."""
+    return (b'{"options": {"partial_answers": true}, "layers": [' + b'{"islands":[{"contours":[{}]}]},' * 20_000 + b"{}]}")
+
+
+def empty_visits():
+    """A route that is known, of three bytes a visit."""
+    return b'{"layers": [{"islands": [{"contours": [{"points": [1,2]}]}], "initial_route": [' + b"{}," * 200_000 + b"{}]}]}"
+
+
 def unread_lines(server, end):
     """Jobs of many layers whose answers nobody reads."""
     body = json.dumps({"options": {"strategy": {"name": "none"}}, "layers": [{}] * 4000}).encode()
     leave_unread(server, end, HEAD % len(body) + body, addresses=4)
+
+
+def unread_pages(server, end):
+    """Thousands of requests at a time for what is longer than they are."""
+    leave_unread(server, end, b"GET /openapi.json HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 5000, addresses=4)
+
+
+def strategies_begun_and_left(server, end):
+    """Questions for which a worker asks the service, whose callers go at once."""
+    def step():
+        for connection in [open_http(server) for _ in range(20)]:
+            connection.sendall(b"GET /v1/strategies HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+            connection.close()
+
+    until(end, patiently(step))
 
 
 def begun_and_left(server, end):

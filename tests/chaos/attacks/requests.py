@@ -42,6 +42,22 @@ def validate_only(strategy="auto"):
     return field(1, field(2, field(1, strategy.encode())) + b"\x68\x01")
 
 
+def faulty_layers():
+    """Seven bytes for each layer that is at fault, which partial answers are to say of each."""
+    return field(1, field(2, field(1, b"none")) + b"\x70\x01") + field(2, field(3, field(2, field(1, b"")))) * 90_000
+
+
+def empty_visits():
+    """A route that is known, of two bytes a visit and of none of the layer's paths."""
+    return options("auto") + field(2, field(3, field(2, field(2, packed([1.0, 2.0])))) + b"\x5a\x00" * (7 << 20))
+
+
+def known_route():
+    """A large layer with a route that holds, to be improved."""
+    visits = b"".join(field(11, b"\x08\x00\x10" + varint(i)) for i in range(20_000))
+    return options("auto") + field(2, layer_of(20_000) + visits)
+
+
 def many_pairs():
     """A node of a hundred thousand paths with as many pairs."""
     count = 60_000
