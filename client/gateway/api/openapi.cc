@@ -253,9 +253,7 @@ Json Schemas() {
   return schemas;
 }
 
-}  // namespace
-
-std::string OpenApiJson() {
+std::string DocumentText() {
   const Json text = {{"schema", {{"type", "string"}}}};
   Json paths = {{"/v1/gcode", RewritePath()},
                 {"/v1/jobs", JobsPath()},
@@ -290,6 +288,13 @@ std::string OpenApiJson() {
          {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}},
           {"key", {{"type", "apiKey"}, {"in", "header"}, {"name", "X-Api-Key"}}}}}}}};
   return document.dump(1) + "\n";
+}
+
+}  // namespace
+
+const std::string& OpenApiJson() {
+  static const auto& text = *new std::string(DocumentText());
+  return text;
 }
 
 }  // namespace traverse::gateway

@@ -7,8 +7,9 @@
 
 namespace traverse::gateway {
 
-// The document. Its parameters are the rows of ParameterTable.
-std::string OpenApiJson();
+// The document, made once: strangers may ask for it as often as they like. Its parameters are the
+// rows of ParameterTable.
+const std::string& OpenApiJson();
 
 }  // namespace traverse::gateway
 
