@@ -322,7 +322,7 @@ class AutoLayer : public PreparedLayer {
   }
 
   const AutoOptions options_;
-  const Plan& plan_;
+  [[maybe_unused]] const Plan& plan_;  // for assertions
   const AutoSettings settings_;
   std::optional<DerivedOfPlan> derived_;  // by the first search that gets so far
 };

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "absl/strings/str_format.h"
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "client/gateway/api/file_routes.h"
 #include "client/gateway/core.h"
@@ -44,11 +44,12 @@ absl::StatusOr<std::shared_ptr<Job>> JobStore::Add(JobWish wish) {
   absl::StatusOr<std::string> id = ids_.New(caller);
   if (!id.ok()) return id.status();
   if (const auto refusal = shares_.Take(1, caller)) {
-    return absl::ResourceExhaustedError(absl::StrFormat(
-        refusal->of_caller ? "this caller may have %d jobs now, and has them; fetch "
-                             "results and delete them, or come again later"
-                           : "the gateway keeps %d jobs at most; come again later",
-        refusal->most));
+    return absl::ResourceExhaustedError(
+        refusal->of_caller
+            ? absl::StrCat("this caller may have ", refusal->most,
+                           " jobs now, and has them; fetch results and delete them, or come again "
+                           "later")
+            : absl::StrCat("the gateway keeps ", refusal->most, " jobs at most; come again later"));
   }
   const std::string key = wish.key;
   auto job = std::make_shared<Job>(*id, std::move(wish));
