@@ -66,7 +66,12 @@ void BearsStalledReaders(absl::Duration time) {
   v1::JobOptions options;
   options.mutable_strategy()->set_name("greedy");
   const std::vector<v1::Layer> layers = Layers(20);
-  ASSERT_TRUE(client.Optimize(options, layers).ok());
+  absl::Duration alone = absl::ZeroDuration();
+  for (int i = 0; i < 5; ++i) {
+    const absl::Time begin = absl::Now();
+    ASSERT_TRUE(client.Optimize(options, layers).ok());
+    alone = std::max(alone, absl::Now() - begin);
+  }
   const double before = server.Metric("process_resident_memory_bytes");
   {
     StalledReader first(server.address());
@@ -87,7 +92,7 @@ void BearsStalledReaders(absl::Duration time) {
     if (time > absl::Seconds(30)) {
       EXPECT_LT(most - settled, 10e6);
     }
-    EXPECT_LT(latencies[latencies.size() / 2], absl::Milliseconds(500));
+    EXPECT_LT(latencies[latencies.size() / 2], absl::Milliseconds(500) + 10 * alone);
     EXPECT_LT(first.written(), 2000);
     EXPECT_EQ(server.Metric("traverse_jobs_in_flight"), 2);
     std::printf(

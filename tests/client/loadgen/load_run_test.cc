@@ -130,7 +130,7 @@ TEST_F(LoadRun, WarmUpIsNotCounted) {
 
   EXPECT_EQ(service_.calls, 80);
   EXPECT_EQ(result.sent[0], 50u);
-  EXPECT_LT(result.ok[0].latency.Percentile(0.5), absl::Milliseconds(50));
+  EXPECT_EQ(result.ok[0].latency.count(), 50u);
 }
 
 TEST_F(LoadRun, JobsBeyondTheMostInFlightAreCountedAsNotSent) {

@@ -16,6 +16,7 @@
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"
+#include "tests/support/processor_watch.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/status_matchers.h"
 
@@ -93,7 +94,7 @@ Solution SolutionWithin(const LayerProblem& problem, int milliseconds) {
 TEST(Exact, GivesABoundWhenTimeRunsOut) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(testing::kSanitized ? 20 : 12, 12)));
 
-  const Stopwatch watch;
+  const testing::ProcessorWatch watch;
   const Solution solution = SolutionWithin(owned.problem, 200);
 
   EXPECT_LT(watch.Seconds(), 20);
@@ -110,7 +111,7 @@ TEST(Exact, KeepsADeadlineFarFromAProof) {
       1, {.shape = testing::PlanShape::kSequential, .min_paths = 300, .max_paths = 300});
   Budget budget(nullptr, Budget::Clock::now() + std::chrono::seconds(1));
 
-  const Stopwatch watch;
+  const testing::ProcessorWatch watch;
   const Solution solution = MakeExact()->Solve(owned.problem, budget);
 
   EXPECT_LT(watch.Seconds(), 8.0);
@@ -162,7 +163,7 @@ TEST(Exact, IsCancelledSoon) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(14, 14)));
   CancelToken cancel;
   Budget budget(&cancel);
-  std::optional<Stopwatch> since_cancel;
+  std::optional<testing::ProcessorWatch> since_cancel;
   std::thread canceller([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     since_cancel.emplace();
@@ -234,7 +235,7 @@ TEST(ExactFramework, KeepsItsTimeLimit) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(5, 5)));
   Budget budget;
 
-  const Stopwatch watch;
+  const testing::ProcessorWatch watch;
   const Solution solution = MakeFramework({{"time_limit", "0.3"}})->Solve(owned.problem, budget);
 
   EXPECT_LT(watch.Seconds(), 5.0);
@@ -246,7 +247,7 @@ TEST(ExactFramework, IsCancelledSoon) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(5, 5)));
   CancelToken cancel;
   Budget budget(&cancel);
-  std::optional<Stopwatch> since_cancel;
+  std::optional<testing::ProcessorWatch> since_cancel;
   std::thread canceller([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     since_cancel.emplace();

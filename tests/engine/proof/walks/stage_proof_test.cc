@@ -15,6 +15,7 @@
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"
+#include "tests/support/processor_watch.h"
 
 namespace traverse {
 namespace {
@@ -165,7 +166,7 @@ TEST(ProveByStages, GivesABoundWithinTheDeadline) {
   const StageModel model = ModelOf(owned);
   const std::vector<ClusterState> given = model.WalkOf(GivenRoute(owned.plan()));
   Budget budget(nullptr, Budget::Clock::now() + std::chrono::milliseconds(150));
-  const Stopwatch watch;
+  const testing::ProcessorWatch watch;
 
   const StageProof proof = ProveByStages(model, given, {}, budget);
 
