@@ -4,12 +4,13 @@
 #   deploy/install-packages.sh build      what the build needs
 #   deploy/install-packages.sh test       that, and what the tests need, a browser and Node among it
 #   deploy/install-packages.sh release    the build's, and what packs
-#   deploy/install-packages.sh sanitize   the build's, clang and what the tests in C++ need
+#   deploy/install-packages.sh sanitize   the build's, and what the tests in C++ and their sanitizers need
+#   deploy/install-packages.sh debug      the tests', and GCC
 #   deploy/install-packages.sh deploy     the tests', and the daemons and tools of the tests of deploy/, but kubectl
 set -euo pipefail
 
 build=(
-  g++ cmake ninja-build pkg-config
+  clang lld cmake ninja-build pkg-config
   libgrpc++-dev libssl-dev openssl protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev libmicrohttpd-dev
   zlib1g-dev liblzma-dev libcairo2-dev coinor-libcbc-dev coinor-libclp-dev
@@ -22,7 +23,8 @@ test=(
   chromium fonts-dejavu-core nats-server
 )
 release=(dpkg-dev file gzip python3 python3-pip python3-setuptools python3-wheel)
-sanitize=(clang libclang-rt-14-dev llvm)
+sanitize=(libclang-rt-14-dev llvm)
+debug=(g++)  # the other compiler that people have
 deploy=(
   prometheus haproxy systemd mmdebstrap buildah podman podman-compose runc catatonit
   containernetworking-plugins golang-github-containernetworking-plugin-dnsname iptables
@@ -36,10 +38,11 @@ case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
   release) wanted=("${build[@]}" "${release[@]}") ;;
+  debug) wanted=("${build[@]}" "${test[@]}" "${debug[@]}") ;;
   sanitize) wanted=("${build[@]}" "${unit[@]}" "${sanitize[@]}") ;;
   deploy) wanted=("${build[@]}" "${test[@]}" "${deploy[@]}") ;;
   *)
-    echo "usage: $0 build|test|release|sanitize|deploy" >&2
+    echo "usage: $0 build|test|release|sanitize|debug|deploy" >&2
     exit 2
     ;;
 esac

@@ -33,6 +33,7 @@ if [ -z "$corpus" ]; then
 fi
 
 if [ "$builds" = 1 ]; then
+  cmake -B "$build" -DTRAVERSE_LONG_TESTS=ON >&2
   targets=(layers_bench gcode_corpus_bench)
   if cmake --build "$build" --target help | grep -q '^engine_micro'; then targets+=(engine_micro); fi
   cmake --build "$build" --target "${targets[@]}" >&2
