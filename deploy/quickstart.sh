@@ -6,12 +6,7 @@ cd "$(dirname "$0")/.."
 
 deploy/install-packages.sh build
 mkdir -p build
-# A clean checkout is built a folder at a time, in half the time; a build that is there goes on as it was begun.
-lumps=()
-if [ ! -e build/release/CMakeCache.txt ]; then
-  lumps=(-DCMAKE_UNITY_BUILD=ON)
-fi
-cmake --preset release -DTRAVERSE_TESTS=OFF "${lumps[@]}" >build/configure.log 2>&1 || {
+cmake --preset release -DTRAVERSE_TESTS=OFF >build/configure.log 2>&1 || {
   cat build/configure.log >&2
   exit 1
 }

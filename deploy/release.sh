@@ -22,7 +22,7 @@ export SOURCE_DATE_EPOCH LC_ALL=C TZ=UTC
 
 deploy/install-packages.sh release
 if [ $# -lt 2 ]; then
-  cmake --preset release -B "$build" -DTRAVERSE_TESTS=OFF -DCMAKE_UNITY_BUILD=ON >/dev/null
+  cmake --preset release -B "$build" -DTRAVERSE_TESTS=OFF >/dev/null
   cmake --build "$build"
 fi
 
