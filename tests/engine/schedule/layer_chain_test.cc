@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <thread>
@@ -235,12 +236,15 @@ TEST(LayerChain, NoLayerTakesTheTimeOfThoseAfterIt) {
   const StepClock clock;
   RecordingSink sink;
   TestExecutor executor(1);  // time passes by what one thread reads
+  std::promise<void> added;
+  executor.Submit([&added] { added.get_future().wait(); });
   JobSpec spec;
   spec.deadline = StepClock::At(500'000);
   spec.time = &clock;
   auto job = Job::Start(spec, std::make_unique<Greedier>(in_time, clock), executor, sink);
   for (int i = 0; i < 10; ++i) job->Add({RingLayer(5, i), Point{}, {}});
   job->Close();
+  added.set_value();
   sink.Wait();
 
   ASSERT_EQ(sink.outcomes.size(), 10u);
