@@ -17,9 +17,11 @@ def run(*command, **more):
 
 def environment(folder, package):
     """A fresh environment with the package and what Debian has of its needs."""
-    run("/usr/bin/python3", "-m", "venv", "--system-site-packages", folder)
-    run(folder / "bin/python", "-m", "pip", "install", "-q", "--no-index", "--no-build-isolation", "--no-deps", package)
-    return folder / "bin/python"
+    python = folder / "bin/python"
+    run("/usr/bin/python3", "-m", "venv", "--without-pip", "--system-site-packages", folder)
+    run("/usr/bin/python3", "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-build-isolation",
+        "--no-deps", package)
+    return python
 
 
 def main():
