@@ -62,6 +62,11 @@ class LayerSolver {
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
+  // The same if it is done by `route` from `start`.
+  static Point EndOf(const ChainLayer& layer, const Route& route, Point start) {
+    return layer.finish.value_or(RouteEnd(layer.given.plan, route, start));
+  }
+
   // Returns the route of greedy's chain if that begins the layer here; else searches, in the time
   // that is kept for it, besides that of any search. Like measuring and checking a route it is done
   // although the deadline has passed, for as many points as take less time than a
@@ -117,6 +122,8 @@ class LayerSolver {
   bool KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
                         Solution& solution) const;
   double MostOverGreedyFrom(Point end, const ChainLayer& layer, const TrueStart& at) const;
+  double MostOverGreedyFrom(Point end, const ChainLayer& layer, bool is_followed,
+                            const ChainLayer* next) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
   bool KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,

@@ -12,15 +12,6 @@
 #include "engine/schedule/layer_solver.h"
 
 namespace traverse {
-namespace {
-
-// Where the head is after the layer, cleaning included.
-Point EndOf(const ChainLayer& layer, const Route& route, Point start) {
-  return layer.finish.value_or(RouteEnd(layer.given.plan, route, start));
-}
-
-}  // namespace
-
 void LayerSolver::SolveAlone(ChainLayer& layer, Point start) const {
   const Stopwatch watch;
   const LayerProblem problem = Problem(layer, start);

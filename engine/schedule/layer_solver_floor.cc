@@ -95,33 +95,61 @@ bool LayerSolver::KeepWithinInitial(const LayerProblem& problem, const ChainLaye
   return true;
 }
 
-// A cheaper route may end where all that follows costs more. So where the clock cut a search short,
-// the job must be able to go on by greedy's chain from the next layer on, also if that has not come
-// yet, and cost no more than that in all; if not, the layer keeps to greedy's chain, from which it
-// can. Returns whether it does.
+// A cheaper route may end where all that follows costs more, and the clock may cut short whatever
+// would mend that. So wherever it may, the job can at each layer's end go on so that it costs no
+// more in all than greedy's chain, by what is known then: by that chain, or first by the layers in
+// view as they are foreseen. A layer whose route would break this keeps to what the one before
+// foresaw of it, or to greedy's chain, from which it holds. Returns whether it does.
 bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer,
                                    const TrueStart& at, Solution& solution) const {
-  const bool knows = layer.greedy && layer.greedy->route.size() == solution.route.size();
-  if (!knows || solution.stop != StopReason::kTimeLimit || strategy_->traits().pure) return false;
+  if (!layer.greedy || strategy_->traits().pure) return false;
   const auto over = [&](const Route& route) {
-    const Point end = layer.finish.value_or(RouteEnd(layer.given.plan, route, problem.start));
     return at.over_greedy + RouteCost(problem, route) - layer.greedy->cost +
-           MostOverGreedyFrom(end, layer, at);
+           MostOverGreedyFrom(EndOf(layer, route, problem.start), layer, at);
   };
-  const double of_solution = over(solution.route);
-  const double same = kSameCost * layer.greedy->cost;
-  if (of_solution <= same || over(layer.greedy->route) >= of_solution) return false;
-  solution.route = layer.greedy->route;
+  double least = over(solution.route);
+  if (least <= kSameCost * layer.greedy->cost) return false;
+  const Route* best = nullptr;
+  for (const Route* route : {&layer.foreseen, &layer.greedy->route}) {
+    if (route->size() != solution.route.size()) continue;
+    const double other = over(*route);
+    if (other >= least) continue;
+    least = other;
+    best = route;
+  }
+  if (best == nullptr) return false;
+  solution.route = *best;
+  if (solution.stop == StopReason::kOptimal) solution.stop = StopReason::kLocalOptimum;
   return true;
 }
 
-// What the layers behind this one cost more from `end` than from where greedy's chain ends it, if
-// they go on by that chain. If they are not known, or their walls may not be asked about because
-// the layer is being searched: at most. They go to that end first, or cross to where they begin.
+// What the layers behind this one cost more from `end` than greedy's chain does, if they go on in
+// the cheapest of the known ways.
 double LayerSolver::MostOverGreedyFrom(Point end, const ChainLayer& layer,
                                        const TrueStart& at) const {
-  if (!at.is_followed || end == layer.greedy->end) return 0;
-  const ChainLayer* const next = at.next.get();
+  const ChainLayer* before = &layer;
+  const ChainLayer* next = at.next.get();
+  bool is_followed = at.is_followed;
+  double foreseen = 0;
+  double least = MostOverGreedyFrom(end, *before, is_followed, next);
+  for (size_t i = 0; i < at.view.size(); ++i) {
+    before = at.view[i].get();
+    if (!before->greedy || before->foreseen.size() != before->given.plan.paths.size()) break;
+    foreseen += RouteCost(Problem(*before, end), before->foreseen) - before->greedy->cost;
+    end = EndOf(*before, before->foreseen, end);
+    next = i + 1 < at.view.size() ? at.view[i + 1].get() : nullptr;
+    is_followed = next != nullptr || before->given.more_follows;
+    least = std::min(least, foreseen + MostOverGreedyFrom(end, *before, is_followed, next));
+  }
+  return least;
+}
+
+// The same if they go on by greedy's chain, from where it ends `layer`. If they are not known, or
+// their walls may not be asked about because the layer is being searched: at most. They go to that
+// end first, or cross to where they begin.
+double LayerSolver::MostOverGreedyFrom(Point end, const ChainLayer& layer, bool is_followed,
+                                       const ChainLayer* next) const {
+  if (!is_followed || end == layer.greedy->end) return 0;
   if (next != nullptr && next->greedy && !next->walls)
     return RouteCost(Problem(*next, end), next->greedy->route) - next->greedy->cost;
   const CostSpec& cost = next != nullptr ? next->cost : layer.cost;
