@@ -118,7 +118,9 @@ void ExpectWithinGreedy(const Case& of) {
   }
   if (of.large >= 0) return;
   // A job that looks ahead may begin layers where greedy would go on from well.
-  if (!of.look_ahead) EXPECT_LE(sum, greedy + 1e-6);
+  if (!of.look_ahead) {
+    EXPECT_LE(sum, greedy + 1e-6);
+  }
   EXPECT_LE(sum, GreedyChainCost(of.layers, of.contours) * (1 + 1e-6));
 }
 
