@@ -12,6 +12,7 @@
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/link/link_looks.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/model/part_links.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
@@ -143,7 +144,7 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     const PlannedTravel planned_travel = rules.TravelOf(from, to, feature);
     // New travel does not include wipes either; nor what the head does at a boundary, which it does
     // in any order.
-    const bool boundary = (block.link & (kLinkSplits | kLinkFixed)) != 0;
+    const bool boundary = IsBoundary(block);
     const bool plain = (block.link & kLinkWipes) == 0 && !boundary;
     double seconds = plain ? TravelSeconds(file, b, travel)
                            : NewTravelSeconds(file, b - 1, planned_travel, travel);

@@ -8,6 +8,7 @@
 
 #include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/order_state.h"
+#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 namespace {
@@ -266,7 +267,7 @@ class LayerMerge {
 std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
   std::vector<bool> boundaries;
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
-    boundaries.push_back((file.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
+    boundaries.push_back(IsBoundary(file.blocks[b]));
   }
   return boundaries;
 }

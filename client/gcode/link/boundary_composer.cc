@@ -2,6 +2,7 @@
 
 #include "client/gcode/link/composer.h"
 #include "client/gcode/link/label_lines.h"
+#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 
@@ -52,7 +53,7 @@ void LinkComposer::ComposeBoundary() {
     }
   }
   const uint32_t to = to_.placement().block;
-  if (to != boundary && (file_.blocks[to].link & (kLinkSplits | kLinkFixed)) == 0) AddComments();
+  if (to != boundary && !IsBoundary(file_.blocks[to])) AddComments();
   Settle(link);
 }
 

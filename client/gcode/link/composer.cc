@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/model/part_links.h"
 #include "client/gcode/model/positions.h"
 
 namespace traverse::gcode {
@@ -11,8 +12,6 @@ namespace {
 
 // What is left of a travel move behind a slope is at least this long.
 constexpr double kMinSlopeRestMm = 0.5;
-
-bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
 // `rise` for travel of `length`: a slope that lasts as long as its travel rises on, up to
 // `highest`.
@@ -112,7 +111,7 @@ void LinkComposer::ComposePlain() {
                               LengthXy(link_.at(), to_.first()), donors_.highest_lift());
   TravelAs(like, to_.first().z + rise.lift, rise);
   Arrive(like);
-  if (IsSoft(to_.block())) AddComments();
+  if (!IsBoundary(to_.block())) AddComments();
   Settle(like);
 }
 

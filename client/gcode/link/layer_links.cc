@@ -9,6 +9,7 @@
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/loops.h"
+#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 
@@ -33,7 +34,7 @@ LayerLinks::LayerLinks(const GcodeFile& file, const Layer& layer, const Retracti
 LinkForm LayerLinks::FormOf(const Placement& from, Vertex end, const Placement& to,
                             uint32_t place) const {
   LinkForm form;
-  if ((file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0) form.boundary = place;
+  if (IsBoundary(file_.blocks[place])) form.boundary = place;
   form.given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                (!form.boundary || to.block == place);
   DecideTravel(from, end, to, place, form);

@@ -5,6 +5,7 @@
 
 #include "client/gcode/link/link.h"
 #include "client/gcode/model/loops.h"
+#include "client/gcode/model/part_links.h"
 #include "client/gcode/parallel.h"
 
 namespace traverse::gcode {
@@ -38,9 +39,8 @@ std::vector<LinkLook> LooksOfLinks(const GcodeFile& file, size_t layer,
   std::vector<LinkLook> looks(outlines.size());
   for (uint32_t block = of_file.first_block; block < of_file.end_block; ++block) {
     LinkLook& look = looks[block - of_file.first_block];
-    const int link = file.blocks[block].link;
-    look.retracts = (link & kLinkRetracts) != 0;
-    if (block == of_file.first_block || (link & (kLinkSplits | kLinkFixed)) != 0) continue;
+    look.retracts = (file.blocks[block].link & kLinkRetracts) != 0;
+    if (block == of_file.first_block || IsBoundary(file.blocks[block])) continue;
     look.hidden = rules.Hides(LineTo(file, block, look.retracts),
                               outlines[block - of_file.first_block].feature);
   }

@@ -1,4 +1,4 @@
-// Links of a file that show how travel between paths of the part is written.
+// What the links of a file are to its paths.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_PART_LINKS_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_PART_LINKS_H_
@@ -8,6 +8,11 @@
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {
+
+// Whether nothing crosses the link before `block`: it has marks, or stays byte by byte.
+inline bool IsBoundary(const Block& block) {
+  return (block.link & (kLinkSplits | kLinkFixed)) != 0;
+}
 
 // Whether the link to `block` leads from one path of the part itself to another: neither is printed
 // by a script or on a tower.

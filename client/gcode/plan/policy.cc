@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/gcode/model/loops.h"
+#include "client/gcode/model/part_links.h"
 #include "client/gcode/plan/path_rules.h"
 #include "client/gcode/plan/precedence.h"
 
@@ -67,7 +68,7 @@ class LayerPlanner {
 
 bool LayerPlanner::BeginsGroup(size_t path) const {
   if (path == 0 || rules()[path].pinned || rules()[path - 1].pinned) return true;
-  if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
+  if (IsBoundary(BlockOf(path))) return true;
   if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
   if (IsFree(policy_) || fan_order_ || fans_of_paths_) return false;
   const PrintState& state = file_.states[BlockOf(path).state_in];

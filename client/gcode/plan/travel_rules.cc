@@ -33,14 +33,12 @@ RetractionCount SumInside(const RetractionCounts& counts) {
   return sum;
 }
 
-bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits)) == 0; }
-
 // Calls visit(block, from, to) for the links inside a layer that have no marks in them.
 template <typename Visit>
 void ForEachTravel(const GcodeFile& file, const Layer& layer, Visit visit) {
   for (uint32_t b = layer.first_block + 1; b < layer.end_block; ++b) {
     const Block& block = file.blocks[b];
-    if (!IsSoft(block)) continue;
+    if (IsBoundary(block)) continue;
     const MachineState& mode = file.modes[block.mode];
     visit(block, mode.InMm(file.blocks[b - 1].last), mode.InMm(block.first), b);
   }
@@ -157,7 +155,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   RetractionHabit habit;
   habit.avoids_walls = AvoidsWalls(file);
   for (const Block& block : file.blocks) {
-    habit.retracts = habit.retracts || (IsSoft(block) && (block.link & kLinkRetracts) != 0);
+    habit.retracts = habit.retracts || (!IsBoundary(block) && (block.link & kLinkRetracts) != 0);
   }
   if (!habit.retracts) return habit;
   const std::vector<size_t> sample = SampledLayers(file);

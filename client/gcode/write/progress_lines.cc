@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/gcode/model/outline.h"
+#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 
@@ -19,7 +20,7 @@ ProgressLines::ProgressLines(const GcodeFile& file, const Layer& layer, bool mov
 
 void ProgressLines::FindParts(const Layer& layer, bool moved) {
   const auto splits = [this, moved](uint32_t block) {
-    return !moved && (file_.blocks[block].link & (kLinkSplits | kLinkFixed)) != 0;
+    return !moved && IsBoundary(file_.blocks[block]);
   };
   auto next = file_.progress.begin();
   for (uint32_t begin = layer.first_block; begin < layer.end_block;) {
