@@ -12,6 +12,18 @@
 #include "engine/schedule/layer_solver.h"
 
 namespace traverse {
+namespace {
+
+// For a route that was put in the place of one that was found: for the sake of the next layer, or
+// the same but for rounding.
+void StateReplaced(const LayerProblem& problem, Solution& solution) {
+  if (solution.stop == StopReason::kOptimal &&
+      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
+    solution.stop = StopReason::kLocalOptimum;
+  }
+}
+
+}  // namespace
 
 Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {
   if (layer.greedy && layer.greedy->start == problem.start) return layer.greedy->route;
@@ -70,12 +82,7 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
   }
   offer(layer.given_route);
   offer(layer.given.initial_route);
-  // An optimal route was replaced for the sake of the next layer, or by one that is the same but
-  // for rounding.
-  if (was_replaced && solution.stop == StopReason::kOptimal &&
-      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
-    solution.stop = StopReason::kLocalOptimum;
-  }
+  if (was_replaced) StateReplaced(problem, solution);
 }
 
 // A layer's own cost never exceeds that of the route that the caller knows, not even for the sake
@@ -88,10 +95,7 @@ bool LayerSolver::KeepWithinInitial(const LayerProblem& problem, const ChainLaye
   const double cost = RouteCost(problem, initial, &turns);
   if (cost >= RouteCost(problem, solution.route, &turns)) return false;
   solution.route = initial;
-  if (cost > solution.lower_bound.value_or(0) * (1 + kSameCost) &&
-      solution.stop == StopReason::kOptimal) {
-    solution.stop = StopReason::kLocalOptimum;
-  }
+  StateReplaced(problem, solution);
   return true;
 }
 
@@ -119,7 +123,7 @@ bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer
   }
   if (best == nullptr) return false;
   solution.route = *best;
-  if (solution.stop == StopReason::kOptimal) solution.stop = StopReason::kLocalOptimum;
+  StateReplaced(problem, solution);
   return true;
 }
 
