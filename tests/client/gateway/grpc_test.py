@@ -11,7 +11,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import TESTS, Gateway, lines_of_infill, optimised_by_command, square_wall
+from gateway_process import TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
 
 PROTO = os.path.join(os.path.dirname(TESTS), "proto")
 PART = lines_of_infill(3)
@@ -231,7 +231,9 @@ class Calls(OnGateway):
 
     def test_cancelling_ends_the_work(self):
         call = self.method("Rewrite")(
-            self.requests(lines_of_infill(1500), strategy={"name": "auto", "options": {"effort": "100"}}), timeout=60)
+            self.requests(endless_infill(), layer_time_limit={"seconds": 1000},
+                          strategy={"name": "tabu", "options": {"evaluations": "0", "diversifications": "1000000"}}),
+            timeout=60)
         next(call)
         call.cancel()
         deadline = time.time() + 10

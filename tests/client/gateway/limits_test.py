@@ -18,7 +18,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import Gateway, detail, form, lines_of_infill
+from gateway_process import ENDLESS, Gateway, detail, endless_infill, form, lines_of_infill
 
 PART = lines_of_infill(3)
 
@@ -184,8 +184,9 @@ class Time(unittest.TestCase):
         gateway = Gateway("--workers=1")
         self.addCleanup(gateway.close)
         connection = socket.create_connection(("127.0.0.1", gateway.http_port))
-        body = lines_of_infill(1500)
-        connection.sendall(b"POST /v1/gcode?option=effort=100 HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        body = endless_infill()
+        head = f"POST /v1/gcode{ENDLESS} HTTP/1.1\r\nHost: x\r\nContent-Length: {len(body)}\r\n\r\n"
+        connection.sendall(head.encode() + body)
         deadline = time.time() + 10
         while gateway.metric("traverse_gateway_workers_busy") == 0 and time.time() < deadline:
             time.sleep(0.02)
