@@ -87,6 +87,9 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
     out.append(text.substr(line.begin, line.end - line.begin));
   };
   size_t seen = 0;  // lines of progress that have been passed
+  // The deposit before, in front of which a line may stand as well.
+  size_t last = 0;
+  double last_seconds = 0;
   const auto visit = [&](const Step& step, double seconds) {
     if (step.kind == StepKind::kProgress) {
       const size_t here = seen++;
@@ -99,10 +102,15 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
         ++next;
       }
     } else if (step.kind == StepKind::kExtrude || seconds >= is.seconds) {
-      while (next < goes.size() && goes[next] && was.lines[next].share * is.seconds <= seconds) {
-        write(step.line.begin);
+      while (next < goes.size() && goes[next]) {
+        const double wanted = was.lines[next].share * is.seconds;
+        if (wanted > seconds) break;
+        const bool before = last > 0 && last >= copied && wanted - last_seconds < seconds - wanted;
+        write(before ? last : step.line.begin);
         put_next();
       }
+      last = step.line.begin;
+      last_seconds = seconds;
     }
   };
   MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
