@@ -114,10 +114,7 @@ class Writer:
     def travel(self, point, retract):
         options = self.options
         if retract:
-            if options["firmware"]:
-                self.put("G10")
-            else:
-                self.put(f"G1 {self.extrude(-0.8)} F{self.feed(2100)}")
+            self.pull_back()
             if options["dwell"]:
                 self.put("G4 P20")
             if options["wipe"] == "bare":
@@ -132,8 +129,14 @@ class Writer:
                 self.put(f"G1 Z{self.long(self.z, 2)} F{self.feed(9000)}")
             elif options["lift"] == "relative":
                 self.put("G91", f"G1 Z{self.long(-0.4, 2)} F{self.feed(9000)}", "G90")
-            self.put("G11" if options["firmware"] else f"G1 {self.extrude(0.8)} F{self.feed(2100)}")
+            self.prime()
         self.at = point
+
+    def pull_back(self):
+        self.put("G10" if self.options["firmware"] else f"G1 {self.extrude(-0.8)} F{self.feed(2100)}")
+
+    def prime(self):
+        self.put("G11" if self.options["firmware"] else f"G1 {self.extrude(0.8)} F{self.feed(2100)}")
 
     def path(self, feature, points, feed):
         mark, *names = self.notation.words
@@ -251,16 +254,18 @@ def print_of(name, seed):
 def begin_layer(writer, layer, tall):
     z = HEIGHT * (layer + 1)
     writer.put(*writer.notation.layer(layer, z))
-    if tall and writer.z:
+    over = tall and writer.z
+    if over:
         # The head goes over what stands there.
+        writer.pull_back()
         writer.put(f"G1 Z{writer.long(tall + 1, 2)} F{writer.feed(9000)}")
         writer.feature = None
-        place = writer.at
-        writer.at = (place[0], place[1] + 200)
-        writer.put(f"{writer.g1(place[0], 5.0)} F{writer.feed(9000)}")
-        writer.at = (place[0], 5.0)
+        writer.at = (writer.at[0], 5.0)
+        writer.put(f"{writer.g1(*writer.at)} F{writer.feed(9000)}")
     writer.z = z
     writer.put(f"G1 Z{writer.long(z, 2)} F{writer.feed(9000)}")
+    if over:
+        writer.prime()
 
 
 LABEL = re.compile(r"; (?:stop |start )?printing object|M486|M62[45]|EXCLUDE_OBJECT|@|;MESH|;PRINTING|; OBJECT_ID")
