@@ -2,12 +2,13 @@
 """Judges what `traverse optimize` makes of a folder of sliced files, by code of its own.
 
   judge.py FOLDER... [--build=build/release] [--policies=safe,balanced,free] [--strategy=ni2opt] [--allow=...]
-           [--shrink=FOLDER] [--most_mb=8]
+           [--shrink=FOLDER] [--words=FILE] [--most_mb=8]
 
 Each file is optimised under each policy, and the pair is checked without the product's reader, writer or verifier
 (checks.py): deposits and their state, filament, obstacles, ironing, open travel over walls and tops, rest of islands,
 progress, labels, head and tail. A table says for each pair what was saved, the layers that stay as sliced, and the first
-fault; with --shrink the smallest part of each file that still fails is written there. Exits with 1 if any pair fails.
+fault; with --shrink the smallest part of each file that still fails is written there, with --words all that `optimize`
+said of each pair. Exits with 1 if any pair fails.
 
 Files may be plain or .xz. Containers are not read. Times are nominal (length by feed rate).
 """
@@ -27,7 +28,7 @@ import print_trace  # noqa: E402
 import shrink  # noqa: E402
 
 SUFFIXES = (".gcode", ".gcode.xz", ".gco", ".g")
-LEAST_LAYER = re.compile(r"(?:slowdown_below_layer_time|slow_down_layer_time|cool_min_layer_time)\s*[=,]\s*(\d+(?:\.\d+)?)")
+LEAST_LAYER = re.compile(r"(?:slowdown_below|slow_down|cool_min|\bmin)_layer_time(?:_sec)?\s*[=:,]\s*(\d+(?:\.\d+)?)")
 NOZZLE = re.compile(r"nozzle_diameter\s*=\s*(\d+(?:\.\d+)?)")
 
 
@@ -144,6 +145,7 @@ def main():
     parser.add_argument("--strategy", default="ni2opt")
     parser.add_argument("--allow", default="")
     parser.add_argument("--shrink", help="folder for the smallest parts that still fail")
+    parser.add_argument("--words", type=pathlib.Path, help="file for all that optimize says")
     parser.add_argument("--most_mb", type=float, default=8)
     parser.add_argument("--timeout", type=float, default=600, help="seconds for one run of optimize")
     arguments = parser.parse_args()
@@ -159,6 +161,9 @@ def main():
                 outcome = Outcome(0, [f"time: no answer within {arguments.timeout:g} s"], "", 0.0)
             result = "; ".join(outcome.faults) if outcome.faults else "ok"
             print(f"{path.name:40} {policy:9} {outcome.saved:8.1f}  {result}", flush=True)
+            if arguments.words:
+                with arguments.words.open("a") as words:
+                    words.write(f"== {path.name} {policy}\n{outcome.says}\n")
             if barrier(outcome.says):
                 print(f"{'':60} {barrier(outcome.says)}")
             if outcome.faults:

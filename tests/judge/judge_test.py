@@ -65,6 +65,12 @@ class Checks(unittest.TestCase):
         self.assertIn("rest", faults(self.towers, after))
         self.assertEqual(faults(self.towers, after, "free"), set())
 
+    def test_the_least_layer_time_is_read_from_the_files_of_many_slicers(self):
+        for line in ("; slow_down_layer_time = 3", "; slowdown_below_layer_time = 3", "; min_layer_time_sec : \t3",
+                     ";   cool_min_layer_time,3"):
+            self.assertEqual(judge.options_of(f"; x\n{line}\n", "safe").least_layer_s, 3, line)
+        self.assertEqual(judge.options_of("; enable_min_layer_time : False\n", "safe").least_layer_s, 10)
+
     def test_less_rest_of_islands_that_count_as_one_is_found(self):
         pair, far = [block(10.4, 0), block(21.6, 0)], [block(60, 0), block(90, 0)]  # 1.2 mm apart
         before = HEAD + layer(0.2, *pair, *far) + layer(0.4, *pair, *far)
