@@ -1,11 +1,13 @@
 #include "client/report/compare.h"
 
+#include <google/protobuf/util/time_util.h>
+
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "absl/time/time.h"
 #include "client/cli/command.h"
 #include "client/cli/flags/run_flags.h"
 #include "client/cli/flags/strategy_spec.h"
@@ -22,16 +24,21 @@
 namespace traverse::cli {
 namespace {
 
+using google::protobuf::util::TimeUtil;
+
 constexpr uint64_t kMaxRepeats = 1000;
 
-// A table of all strategies should not wait two hours for the proof that one of them looks for.
-// There is no deadline: on a busy machine a late answer is better than none.
-constexpr absl::Duration kDefaultTimeLimit = absl::Seconds(5);
-constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
+// A table of all strategies should not wait two hours for the proof that `exact` looks for. The
+// others end by themselves, and are compared by what they find until then: cut short, they show
+// little but luck. There is no deadline: on a busy machine a late answer is better than none.
+constexpr int64_t kSecondsOfSearch = 60;
+constexpr int64_t kSecondsOfProof = 5;
+constexpr int64_t kMillisOfProofOfLayer = 500;  // otherwise the first layers use up the time
 
 struct Request : RunFlags {
   std::vector<StrategySpec> strategies;  // empty: all strategies of the service
   uint64_t repeats = 1;
+  bool limits_time = false;  // by default
   GcodeOptions gcode;
   PlateOptions plates;
 };
@@ -41,11 +48,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   if (!run.ok()) return run.status();
   Request request;
   static_cast<RunFlags&>(request) = *std::move(run);
-  if (!flags.Has("deadline") && !flags.Has("strategies")) {
-    request.job.time_limit = kDefaultTimeLimit;
-    // Otherwise the first layers use up the time, and the others come back in their given order.
-    if (!request.job.layer_time_limit) request.job.layer_time_limit = kDefaultLayerLimit;
-  }
+  request.limits_time = !flags.Has("deadline") && !flags.Has("strategies");
   if (flags.Has("strategies")) {
     auto specs = ParseStrategySpecs(flags.Text("strategies"));
     if (!specs.ok()) return specs.status();
@@ -76,6 +79,14 @@ Outcome ListAll(Service& service, std::vector<StrategySpec>& specs) {
   return Done();
 }
 
+void LimitTime(const StrategySpec& spec, v1::JobOptions& options) {
+  const bool proves = spec.strategy.name() == "exact";
+  *options.mutable_time_limit() =
+      TimeUtil::SecondsToDuration(proves ? kSecondsOfProof : kSecondsOfSearch);
+  if (!proves || options.has_layer_time_limit()) return;
+  *options.mutable_layer_time_limit() = TimeUtil::MillisecondsToDuration(kMillisOfProofOfLayer);
+}
+
 // Runs each strategy with each seed.
 Outcome RunAll(Service& service, const Request& request, InputJob& job,
                std::vector<report::ComparedStrategy>& out) {
@@ -83,12 +94,15 @@ Outcome RunAll(Service& service, const Request& request, InputJob& job,
   for (const StrategySpec& spec : request.strategies) {
     report::ComparedStrategy& compared = out.emplace_back();
     compared.label = spec.label;
+    const v1::JobOptions asked = job.options;
+    if (request.limits_time) LimitTime(spec, job.options);
     for (uint64_t i = 0; i < request.repeats; ++i) {
       job.options.set_seed(first_seed + i);
       Expected<report::JobRun> ran = service.Optimize(job, &spec, request.job, request.quiet);
       if (Outcome* outcome = std::get_if<Outcome>(&ran)) return *outcome;
       compared.runs.push_back(std::get<report::JobRun>(std::move(ran)));
     }
+    job.options = asked;
   }
   return Done();
 }
@@ -168,10 +182,10 @@ Command CompareCommand() {
               {
                   {"strategies",
                    "NAME,...",
-                   "or NAME:OPTION=VALUE (default: all, 5s each)",
+                   "or NAME:OPTION=VALUE (default: all; exact for 5s)",
                    {},
                    false,
-                   "(default: all, 5s each); runs of each"},
+                   "(default: all; exact for 5s); runs of each"},
                   {"repeat", "N", "runs of each, one per seed; shows the means"},
                   {"quiet", "", "no progress", {}, false, "no progress; the printer's limits"},
                   MachineFlag(),
