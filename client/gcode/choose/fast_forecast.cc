@@ -66,10 +66,10 @@ class FastSearch {
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);
     if (std::is_sorted(places.begin(), places.end())) begun.push_back(chosen);
     Seconds seconds;
-    seconds.given = ForecastPaths(*column.writer, travel, column.given_order());
-    seconds.fast = std::min(seconds.given, ForecastPaths(writer, travel, column.given_order()));
-    for (const LayerOrder& order : MergedOrders(writer, travel, begun, rules)) {
-      seconds.fast = std::min(seconds.fast, ForecastPaths(writer, travel, order));
+    seconds.given = ForecastPaths(*column.writer, column.given_order());
+    seconds.fast = std::min(seconds.given, ForecastPaths(writer, column.given_order()));
+    for (const LayerOrder& order : MergedOrders(writer, begun, rules)) {
+      seconds.fast = std::min(seconds.fast, ForecastPaths(writer, order));
     }
     return seconds;
   }
@@ -84,15 +84,14 @@ class FastSearch {
 
 // What is saved as chosen where little is hidden: in the first and the last layer, and between
 // layers.
-double SavedElsewhere(const std::vector<LayerColumn>& columns,
-                      const std::vector<TravelModel>& travel) {
+double SavedElsewhere(const std::vector<LayerColumn>& columns) {
   double saved = 0;
   for (const size_t layer : {size_t{0}, columns.size() - 1}) {
     const LayerColumn& column = columns[layer];
     const LayerChoice& chosen = column.choices[column.chosen];
     if (column.chosen == 0) continue;
-    saved += ForecastPaths(*column.writer, travel[layer], column.given_order()) -
-             ForecastPaths(*chosen.writer, travel[layer], chosen.order);
+    saved += ForecastPaths(*column.writer, column.given_order()) -
+             ForecastPaths(*chosen.writer, chosen.order);
   }
   for (size_t layer = 1; layer < columns.size(); ++layer) {
     const ChoiceColumn& totals = columns[layer].totals;
@@ -121,9 +120,9 @@ double SecondsSavedByFast(const GcodeFile& file, const std::vector<LayerColumn>&
   if (given <= 0) return 0;
   double all = 0;
   for (size_t layer = 1; layer + 1 < columns.size(); ++layer) {
-    all += ForecastPaths(*columns[layer].writer, travel[layer], columns[layer].given_order());
+    all += ForecastPaths(*columns[layer].writer, columns[layer].given_order());
   }
-  return saved / given * all + SavedElsewhere(columns, travel);
+  return saved / given * all + SavedElsewhere(columns);
 }
 
 }  // namespace traverse::gcode

@@ -12,9 +12,8 @@ constexpr double kGrainMm = 1e-6;
 
 }  // namespace
 
-KnownTravels::KnownTravels(const LayerWriter& writer, const TravelModel& travel,
-                           const MergeRules& rules)
-    : writer_(writer), travel_(travel), rules_(rules), given_(writer.GivenOrder()) {
+KnownTravels::KnownTravels(const LayerWriter& writer, const MergeRules& rules)
+    : writer_(writer), rules_(rules), parts_(writer.file()), given_(writer.GivenOrder()) {
   uint32_t placements = 0;
   for (const Outline& outline : writer.outlines()) {
     numbers_.push_back(placements);
@@ -22,7 +21,7 @@ KnownTravels::KnownTravels(const LayerWriter& writer, const TravelModel& travel,
   }
   given_travels_.resize(given_.size());
   for (size_t i = 1; i < given_.size(); ++i) {
-    given_travels_[i] = writer.EstimateTravel(i, given_[i - 1], given_[i], travel);
+    given_travels_[i] = writer.EstimateTravel(i, given_[i - 1], given_[i], parts_);
     longest_open_mm_ = std::max(longest_open_mm_, given_travels_[i].open_mm);
   }
 }
@@ -48,9 +47,8 @@ TravelTotals KnownTravels::operator()(size_t place, const Placement& from, const
   return found->second;
 }
 
-TravelTotals KnownTravels::Estimate(size_t place, const Placement& from,
-                                    const Placement& to) const {
-  TravelTotals totals = writer_.EstimateTravel(place, from, to, travel_);
+TravelTotals KnownTravels::Estimate(size_t place, const Placement& from, const Placement& to) {
+  TravelTotals totals = writer_.EstimateTravel(place, from, to, parts_);
   if (totals.open_mm > longest_open_mm_ + kGrainMm) totals.too_long = 1;
   if (IsRefused(from, to)) ++totals.too_long;
   return totals;

@@ -10,8 +10,8 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/choose/order_repair.h"
+#include "client/gcode/link/link_parts.h"
 #include "client/gcode/link/travel_totals.h"
-#include "client/gcode/plan/travel_model.h"
 #include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode {
@@ -22,7 +22,7 @@ struct MergeRules;
 class KnownTravels {
  public:
   // All outlive it.
-  KnownTravels(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules);
+  KnownTravels(const LayerWriter& writer, const MergeRules& rules);
 
   // The rules refuse that link.
   bool IsRefused(const Placement& from, const Placement& to) const;
@@ -44,11 +44,11 @@ class KnownTravels {
     return numbers_[placement.block - given_.front().block] + placement.entry;
   }
 
-  TravelTotals Estimate(size_t place, const Placement& from, const Placement& to) const;
+  TravelTotals Estimate(size_t place, const Placement& from, const Placement& to);
 
   const LayerWriter& writer_;
-  const TravelModel& travel_;
   const MergeRules& rules_;
+  LinkParts parts_;
   const LayerOrder given_;
   std::vector<uint32_t> numbers_;            // [path] the number of its first placement
   std::vector<TravelTotals> given_travels_;  // [place] as the layer was given

@@ -206,8 +206,8 @@ class LayerChooser::Impl {
       MergeRules rules = RulesOf(layer);
       rules.refused = &refusals.links;
       rules.places = column.writer->PlacesOf(*order);
-      order = RepairedOrder(*column.writer, travel_[layer], *order, rules,
-                            FreedomWithin(layer, rules), refusals.Reach());
+      order = RepairedOrder(*column.writer, *order, rules, FreedomWithin(layer, rules),
+                            refusals.Reach());
     }
     if (order && refusals.begin) order = BegunAsSliced(*order, column.given_order());
     if (order && refusals.end) order = EndedAsSliced(*order, column.given_order());
@@ -224,7 +224,7 @@ class LayerChooser::Impl {
     if (rules.as_many_retractions) return;
     const LayerOrder& chosen = column.choices[column.chosen].order;
     if (objects_.any()) rules.places = column.writer->PlacesOf(chosen);
-    const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
+    const auto orders = SparingOrders(*column.writer, chosen, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -240,7 +240,7 @@ class LayerChooser::Impl {
       const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
       AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
     }
-    if (polish_) objects_.AddTo(layer, tries_, travel_[layer], std::move(rules), filler_, column);
+    if (polish_) objects_.AddTo(layer, tries_, std::move(rules), filler_, column);
   }
 
   // The orders that `tries` have for layer `layer`, merged by `rules`.
@@ -252,8 +252,8 @@ class LayerChooser::Impl {
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
-    NoteBlocked(found, travel_[layer], column);
-    const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
+    NoteBlocked(found, column);
+    const auto orders = MergedOrders(*column.writer, found, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -298,8 +298,7 @@ class LayerChooser::Impl {
   void AddTurned(size_t layer, const IslandTurns& turns, size_t turn) {
     LayerOrder order = turns.OrderOf(turn);
     if (polish_) {
-      order = SettledWithin(*columns_[layer].writer, travel_[layer], order, RulesOf(layer),
-                            turns.UnitsOf(turn));
+      order = SettledWithin(*columns_[layer].writer, order, RulesOf(layer), turns.UnitsOf(turn));
     }
     filler_.Add(order, layer, columns_[layer]);
   }
@@ -313,7 +312,7 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
     chosen.rest = {rests_.least_seconds(), rests_.LeastOf(TimedRow(columns_, false)),
                    rests_.LeastOf(TimedRow(columns_, true))};
-    chosen.forecast = ForecastOf(columns_, travel_);
+    chosen.forecast = ForecastOf(columns_);
     std::vector<size_t> left;
     std::vector<PartStart> starts;  // [layer] of its paths
     std::vector<Decimal> ends;      // [layer] the register behind them, as foreseen

@@ -39,23 +39,23 @@ bool IsRefused(const LayerColumn& before, uint32_t from, const LayerColumn& colu
 
 }  // namespace
 
-double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
-                     const LayerOrder& order) {
+double ForecastPaths(const LayerWriter& writer, const LayerOrder& order) {
   double seconds = 0;
+  LinkParts parts(writer.file());
   const std::vector<uint32_t> places = writer.PlacesOf(order);
   for (size_t place = 1; place < order.size(); ++place) {
-    seconds += writer.EstimateTravel(places[place], order[place - 1], order[place], travel).seconds;
+    seconds += writer.EstimateTravel(places[place], order[place - 1], order[place], parts).seconds;
   }
   return seconds;
 }
 
-void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& travel,
-                 LayerColumn& column) {
+void NoteBlocked(const std::vector<LayerOrder>& orders, LayerColumn& column) {
   const LayerWriter& writer = *column.writer;
   if (writer.room() == nullptr) return;
+  LinkParts parts(writer.file());
   for (const LayerOrder& order : orders) {
     for (size_t place = 1; place < order.size(); ++place) {
-      const auto link = writer.EstimateTravel(place, order[place - 1], order[place], travel);
+      const auto link = writer.EstimateTravel(place, order[place - 1], order[place], parts);
       column.blocked |= link.blocked > 0;
     }
   }
@@ -254,17 +254,15 @@ bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& colum
   return any;
 }
 
-Forecast ForecastOf(const std::vector<LayerColumn>& columns,
-                    const std::vector<TravelModel>& travel) {
+Forecast ForecastOf(const std::vector<LayerColumn>& columns) {
   Forecast forecast;
   for (size_t layer = 0; layer < columns.size(); ++layer) {
     const LayerColumn& column = columns[layer];
     const LayerWriter& writer = *column.writer;
-    const double given = ForecastPaths(writer, travel[layer], column.given_order());
+    const double given = ForecastPaths(writer, column.given_order());
     const LayerChoice& chosen = column.choices[column.chosen];
     forecast.given_seconds += given;
-    forecast.seconds +=
-        column.chosen == 0 ? given : ForecastPaths(*chosen.writer, travel[layer], chosen.order);
+    forecast.seconds += column.chosen == 0 ? given : ForecastPaths(*chosen.writer, chosen.order);
     if (layer == 0) continue;
     forecast.given_seconds += column.totals.Travel(0, 0).seconds;
     forecast.seconds += column.totals.Travel(columns[layer - 1].chosen, column.chosen).seconds;

@@ -56,8 +56,7 @@ struct LayerColumn {
 };
 
 // Notes whether something stands in the way in one of `orders`.
-void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& travel,
-                 LayerColumn& column);
+void NoteBlocked(const std::vector<LayerOrder>& orders, LayerColumn& column);
 
 // The place whose path, or the link to it, has line `line`, from 0, of the paths of `column` as
 // last chosen.
@@ -128,11 +127,10 @@ bool AnyShortRest(const IslandRests& rests, const std::vector<LayerColumn>& colu
 bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns);
 
 // The seconds of the travel within a layer in `order`, as it is estimated.
-double ForecastPaths(const LayerWriter& writer, const TravelModel& travel, const LayerOrder& order);
+double ForecastPaths(const LayerWriter& writer, const LayerOrder& order);
 
-// Of all layers, with the measured travel moves to them. `travel` has their travel.
-Forecast ForecastOf(const std::vector<LayerColumn>& columns,
-                    const std::vector<TravelModel>& travel);
+// Of all layers, with the measured travel moves to them.
+Forecast ForecastOf(const std::vector<LayerColumn>& columns);
 
 }  // namespace traverse::gcode
 

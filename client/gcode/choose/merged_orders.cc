@@ -88,13 +88,13 @@ class LayerMerge {
  public:
   using Effort = OrderPolisher::Effort;
 
-  LayerMerge(const LayerWriter& writer, const TravelModel& travel,
-             const std::vector<LayerOrder>& found, const MergeRules& rules)
+  LayerMerge(const LayerWriter& writer, const std::vector<LayerOrder>& found,
+             const MergeRules& rules)
       : rules_(rules),
         outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
         found_(found),
-        travels_(writer, travel, rules),
+        travels_(writer, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
         few_(estimate_, AnyLength(LimitsOf(were_, rules))),
@@ -272,21 +272,21 @@ std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
   return boundaries;
 }
 
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer,
                                      const std::vector<LayerOrder>& found,
                                      const MergeRules& rules) {
   const LayerOrder given = writer.GivenOrder();
   for (const LayerOrder& order : found) {
     if (!IsWhole(order, given)) return found;
   }
-  return LayerMerge(writer, travel, found, rules).Merge();
+  return LayerMerge(writer, found, rules).Merge();
 }
 
-std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelModel& travel,
-                                        const LayerOrder& order, const MergeRules& rules,
-                                        const LayerFreedom& freedom, size_t reach) {
+std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const LayerOrder& order,
+                                        const MergeRules& rules, const LayerFreedom& freedom,
+                                        size_t reach) {
   if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
-  return LayerMerge(writer, travel, {}, rules).Repair(order, freedom, reach);
+  return LayerMerge(writer, {}, rules).Repair(order, freedom, reach);
 }
 
 TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
@@ -298,27 +298,26 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
   for (const LayerOrder& order : orders) {
     if (IsWhole(order, writer.GivenOrder())) whole.push_back(order);
   }
-  const LayerMerge merge(writer, travel, {}, rules);
+  const LayerMerge merge(writer, {}, rules);
   return merge.Turn(whole, freedom, islands, rest_seconds,
                     merge.ClockOf(moments, travel.speed_mm_s));
 }
 
-LayerOrder SettledWithin(const LayerWriter& writer, const TravelModel& travel,
-                         const LayerOrder& order, const MergeRules& rules,
-                         std::vector<uint32_t> units) {
-  return LayerMerge(writer, travel, {}, rules).SettleWithin(order, std::move(units));
+LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
+                         const MergeRules& rules, std::vector<uint32_t> units) {
+  return LayerMerge(writer, {}, rules).SettleWithin(order, std::move(units));
 }
 
-LayerOrder SettledOrder(const LayerWriter& writer, const TravelModel& travel,
-                        const LayerOrder& order, const MergeRules& rules) {
+LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,
+                        const MergeRules& rules) {
   if (!IsWhole(order, writer.GivenOrder())) return order;
-  return LayerMerge(writer, travel, {}, rules).Settle(order);
+  return LayerMerge(writer, {}, rules).Settle(order);
 }
 
-std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
-                                      const LayerOrder& order, const MergeRules& rules) {
+std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,
+                                      const MergeRules& rules) {
   if (!IsWhole(order, writer.GivenOrder())) return {};
-  return LayerMerge(writer, travel, {}, rules).Spare(order);
+  return LayerMerge(writer, {}, rules).Spare(order);
 }
 
 }  // namespace traverse::gcode

@@ -45,20 +45,20 @@ std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer);
 // brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
 // begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is
 // also tried with its paths in the order of the file.
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
 
 // `order` without the links that `rules` refuse, or as few of them as can be had by changes around
 // each; for a layer of freedom `freedom`. With greater `reach`, more paths around each are as
 // sliced at the most. Unset if all of them stay.
-std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelModel& travel,
-                                        const LayerOrder& order, const MergeRules& rules,
-                                        const LayerFreedom& freedom, size_t reach);
+std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const LayerOrder& order,
+                                        const MergeRules& rules, const LayerFreedom& freedom,
+                                        size_t reach);
 
 // `order`, one of MergedOrders, improved once more in two ways so that it retracts less. Its first
 // and last path stay. REQUIRES: rules.freedom, rules.polish.
-std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
-                                      const LayerOrder& order, const MergeRules& rules);
+std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,
+                                      const MergeRules& rules);
 
 // The turns of `orders` that may be chosen where islands must rest, for a layer of freedom
 // `freedom`. `islands` as IslandTurns takes them; for `rest_seconds` they rest at the most;
@@ -72,14 +72,13 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
 
 // `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
 // rules.polish.
-LayerOrder SettledWithin(const LayerWriter& writer, const TravelModel& travel,
-                         const LayerOrder& order, const MergeRules& rules,
-                         std::vector<uint32_t> units);
+LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
+                         const MergeRules& rules, std::vector<uint32_t> units);
 
 // `order`, in which whole objects have changed places, improved within each of them.
 // REQUIRES: rules.freedom, rules.polish, rules.places.
-LayerOrder SettledOrder(const LayerWriter& writer, const TravelModel& travel,
-                        const LayerOrder& order, const MergeRules& rules);
+LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,
+                        const MergeRules& rules);
 
 }  // namespace traverse::gcode
 

@@ -231,8 +231,7 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
 }
 
 void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries,
-                         const TravelModel& travel, MergeRules rules, const ColumnFiller& filler,
-                         LayerColumn& column) const {
+                         MergeRules rules, const ColumnFiller& filler, LayerColumn& column) const {
   constexpr size_t kBests = 2;
   const auto asked = [layer](const auto& orders) { return !orders[layer].empty(); };
   if (!any() || std::none_of(tries.begin(), tries.end(), asked)) return;
@@ -247,7 +246,7 @@ void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>
   }
   for (const LayerOrder& order : moved) {
     rules.places = column.writer->PlacesOf(order);
-    filler.Add(SettledOrder(*column.writer, travel, order, rules), layer, column);
+    filler.Add(SettledOrder(*column.writer, order, rules), layer, column);
   }
 }
 

@@ -60,9 +60,8 @@ class ObjectOrders {
   // Adds the file's order and the best of the others of layer `layer`, with objects in other
   // places; not to a layer that none of `tries` has an order for. REQUIRES: rules.freedom,
   // rules.polish.
-  void AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries,
-             const TravelModel& travel, MergeRules rules, const ColumnFiller& filler,
-             LayerColumn& column) const;
+  void AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries, MergeRules rules,
+             const ColumnFiller& filler, LayerColumn& column) const;
 
  private:
   std::vector<uint32_t> Sorted(const Layer& layer, const std::vector<LayerObject>& run,

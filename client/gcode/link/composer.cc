@@ -44,7 +44,7 @@ NewLink LinkComposer::Compose() && {
     return std::move(link_);
   }
   const uint32_t next = from_.placement().block + 1;
-  if (next < file_.blocks.size()) left_ = ReadLink(file_, next);
+  if (next < file_.blocks.size()) left_ = parts_.LinkTo(next);
   if (form_.boundary) {
     ComposeBoundary();
   } else {
@@ -69,8 +69,8 @@ void LinkComposer::KeepGiven() {
 Link LinkComposer::LikeWhat(bool retracts) const {
   const uint32_t to = to_.placement().block;
   if (donors_.IsOwnExample(to, retracts, form_.wipes)) {
-    Link own = ReadLink(file_, to);
-    if (own.arrival >= 0) return own;
+    const std::shared_ptr<const Link> own = parts_.LinkTo(to);
+    if (own->arrival >= 0) return *own;
   }
   for (const bool pulls : {retracts, !retracts}) {
     // Where no travel of the file is open, this is retracted, and so the path is wiped.
@@ -79,15 +79,15 @@ Link LinkComposer::LikeWhat(bool retracts) const {
     if (pulls && !retracts && to_.first().SameXy(link_.at())) return {};
     const std::optional<uint32_t> donor = donors_.Find(to, pulls, pulls && wipes);
     if (!donor) continue;
-    Link like = ReadLink(file_, *donor);
+    Link like = *parts_.LinkTo(*donor);
     if (like.arrival < 0) continue;
     if (const std::optional<uint32_t> pace = donors_.PaceFor(to, *donor)) {
-      const Link own = ReadLink(file_, *pace);
-      if (own.arrival >= 0) like.arriving().feed = own.arriving().feed;
+      const std::shared_ptr<const Link> own = parts_.LinkTo(*pace);
+      if (own->arrival >= 0) like.arriving().feed = own->arriving().feed;
     }
     return like;
   }
-  return ReadLink(file_, to);
+  return *parts_.LinkTo(to);
 }
 
 // What it would be like if it were seen: of that the travel alone.
@@ -132,7 +132,8 @@ std::optional<Link> LinkComposer::OwnDeparture(const Link& like) const {
     // At marks the wipe alone is of the path.
     return form_.wipes && like.arrival >= 0 ? WithWipeOf(like, *left_) : std::nullopt;
   }
-  return left_->arrival >= 0 && left_->SameRetraction(like) ? left_ : std::nullopt;
+  if (left_->arrival < 0 || !left_->SameRetraction(like)) return std::nullopt;
+  return *left_;
 }
 
 // What leads away from the path; returns the link that it is like.
@@ -292,7 +293,7 @@ void LinkComposer::Arrive(const Link& like) {
 void LinkComposer::AddComments() {
   const uint32_t block = to_.placement().block;
   if ((file_.blocks[block].link & kLinkComments) == 0) return;
-  for (const LinkStep& step : ReadLink(file_, block).steps) {
+  for (const LinkStep& step : parts_.LinkTo(block)->steps) {
     if (step.kind == StepKind::kComment) link_.Raw(step.line.Raw(file_.text));
   }
 }

@@ -16,12 +16,14 @@
 #define TRAVERSE_CLIENT_GCODE_LINK_COMPOSER_H_
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "client/gcode/link/link.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/link/link_form.h"
+#include "client/gcode/link/link_parts.h"
 #include "client/gcode/link/new_link.h"
 #include "client/gcode/model/placed_path.h"
 
@@ -31,9 +33,15 @@ namespace traverse::gcode {
 class LinkComposer {
  public:
   // All outlive the composer. The machine is at `at` behind `from`.
-  LinkComposer(const GcodeFile& file, const LinkDonors& donors, const PlacedPath& from,
+  LinkComposer(LinkParts& parts, const LinkDonors& donors, const PlacedPath& from,
                const PlacedPath& to, const LinkForm& form, const MachineState& at)
-      : file_(file), donors_(donors), from_(from), to_(to), form_(form), link_(at) {}
+      : parts_(parts),
+        file_(parts.file()),
+        donors_(donors),
+        from_(from),
+        to_(to),
+        form_(form),
+        link_(at) {}
 
   // Up to where `to` begins, with its state and feed rate set. Also the lines without meaning here
   // that stand before `to` in the file.
@@ -74,12 +82,13 @@ class LinkComposer {
   // The line of `step` as a lift to `z`, if the head is not there.
   void LiftAs(const LinkStep& step, Decimal z);
 
+  LinkParts& parts_;
   const GcodeFile& file_;
   const LinkDonors& donors_;
   const PlacedPath& from_;
   const PlacedPath& to_;
   const LinkForm& form_;
-  std::optional<Link> left_;  // behind `from` in the file
+  std::shared_ptr<const Link> left_;  // behind `from` in the file
   NewLink link_;
 };
 

@@ -109,9 +109,7 @@ void LayerLinks::DecideTravel(const Placement& from, Vertex end, const Placement
   if (!left || behind_fixed) return;
   form.departure = departure;
   behind.mm += departure->departs ? Distance(end, at) : departure->mm;
-  const std::optional<Vertex> aside = departure->wipes ? departures_.ShortMove(from) : at;
-  if (aside) behind.ahead = {aside->x - end.x, aside->y - end.y};
-  if (departure->wipes) behind.mm += std::hypot(behind.ahead.x, behind.ahead.y);
+  if (departure->wipes) behind.mm += Distance(end, departures_.ShortMove(from).value_or(end));
   travel = std::move(behind);
 }
 

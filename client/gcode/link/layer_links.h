@@ -11,6 +11,7 @@
 #include "client/gcode/link/layer_departures.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/link/link_form.h"
+#include "client/gcode/link/link_parts.h"
 #include "client/gcode/link/travel_totals.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/placed_path.h"
@@ -47,10 +48,10 @@ class LayerLinks {
   // Whether the file's own order is written otherwise than it is in the file.
   bool ChangesGiven() const;
 
-  // Estimates the travel to place `place` of the file's layer, from 1, if `to` follows `from`
-  // there, with the crossings and the retraction that would be written.
+  // The travel to place `place` of the file's layer, from 1, if `to` follows `from` there, as it
+  // would be written, but for bends.
   TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                              const TravelModel& model) const;
+                              LinkParts& parts) const;
 
  private:
   Feature FeatureOf(const Placement& path) const {
@@ -76,13 +77,9 @@ class LayerLinks {
   // The travel of a hidden move.
   PlannedTravel OpenTravel(const Placement& from, const Placement& to) const;
 
-  // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
-  // away from it, ends with a stop.
-  TravelJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
-
-  // What the retraction of the travel of `mm` from `from` to `to` takes beside the travel.
-  double RetractionSeconds(const Placement& from, const Placement& to, double mm,
-                           const LinkForm& form, const TravelModel& model) const;
+  // What the link takes as it is composed, with what printing loses at both of its ends.
+  double SecondsOf(const Placement& from, const Placement& to, const LinkForm& form,
+                   LinkParts& parts) const;
 
   // Something is in the way, at the height of the layer or, if it retracts, of the layer's lifts.
   bool IsBlocked(const PlannedTravel& travel) const;

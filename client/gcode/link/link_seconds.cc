@@ -4,26 +4,27 @@
 #include <cmath>
 #include <limits>
 
+#include "client/gcode/link/composer.h"
 #include "client/gcode/link/layer_links.h"
+#include "client/gcode/link/link_meter.h"
 #include "client/gcode/measure/layer_meter.h"
 
 namespace traverse::gcode {
 
 TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                                        const TravelModel& model) const {
+                                        LinkParts& parts) const {
   const uint32_t here = layer_.first_block + static_cast<uint32_t>(place);
   LinkForm form = FormOf(from, departures_.End(from), to, here);
   Hide(from, to, /*bends=*/false, form);
-  const TravelJoints joints = JointsOf(from, to, form.wipes || (form.given && !form.hidden));
   TravelTotals totals;
   PlannedTravel& travel = form.travel;
   double across_mm = travel.mm;
+  totals.seconds = SecondsOf(from, to, form, parts);
   if (form.given && !form.boundary && !form.hidden) {
     const PrintTotals measured = MeasureLink(file_, to.block, walls_);
     travel.mm = static_cast<double>(file_.blocks[to.block].travel_mm);
     travel.crosses = measured.crossings > 0;
     across_mm = measured.longest_open_mm;
-    totals.seconds = TravelSeconds(file_, to.block, model, true, &joints);
   } else {
     // Where the head goes at a boundary it goes in any order: only the travel between the paths
     // counts.
@@ -31,11 +32,9 @@ TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, con
     form.retracts = form.retracts || at_boundary;
     travel.retracts = form.retracts;
     if (form.departure != nullptr) across_mm -= form.departure->mm;
-    totals.seconds = NewTravelSeconds(file_, from.block, travel, model, &joints);
   }
   totals.mm = travel.mm;
   totals.seconds += joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
-  if (form.retracts) totals.seconds += RetractionSeconds(from, to, travel.mm, form, model);
   totals.retractions = form.retracts ? 1 : 0;
   totals.crossings = travel.crosses ? 1 : 0;
   totals.open = travel.crosses && !form.retracts ? 1 : 0;
@@ -51,22 +50,19 @@ PlannedTravel LayerLinks::OpenTravel(const Placement& from, const Placement& to)
   travel.from = leaves;
   travel.to = departures_.Begin(to);
   travel.mm = Distance(leaves, travel.to);
-  if (!(leaves == end)) {
-    travel.mm += departures_.Of(from, /*wipes=*/false)->mm;
-    travel.ahead = {leaves.x - end.x, leaves.y - end.y};
-  }
+  if (!(leaves == end)) travel.mm += departures_.Of(from, /*wipes=*/false)->mm;
   return travel;
 }
 
-TravelJoints LayerLinks::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
-  TravelJoints joints;
-  const Departure* departure = departures_.Of(from, wipes);
-  if (departure == nullptr || departure->departs || departure->stands ||
-      departures_.ShortMove(from)) {
-    joints.from = joints_.EndOf(from.block - layer_.first_block, from.entry);
-  }
-  joints.to = joints_.BeginOf(to.block - layer_.first_block, to.entry);
-  return joints;
+double LayerLinks::SecondsOf(const Placement& from, const Placement& to, const LinkForm& form,
+                             LinkParts& parts) const {
+  const std::shared_ptr<const PlacedPath> left = parts.PathOf(from);
+  const std::shared_ptr<const PlacedPath> next = parts.PathOf(to);
+  PartStart start = StartBehind(file_, left->block());
+  start.machine.at = left->last();
+  LinkMeter meter(file_, start, joints_.EndOf(from.block - layer_.first_block, from.entry));
+  meter.Follow(LinkComposer(parts, donors_, *left, *next, form, start.machine).Compose());
+  return meter.Finish(joints_.BeginOf(to.block - layer_.first_block, to.entry));
 }
 
 double LayerLinks::LeastLiftMm() const {
@@ -89,37 +85,6 @@ bool LayerLinks::IsBlocked(const PlannedTravel& travel) const {
     at = bend;
   }
   return !room_->IsClear(at, z_mm, travel.to, z_mm);
-}
-
-// The path before is left as it is in the file, if it retracts there, and the next one is reached
-// as the travel does that this is like (LinkComposer).
-double LayerLinks::RetractionSeconds(const Placement& from, const Placement& to, double mm,
-                                     const LinkForm& form, const TravelModel& model) const {
-  const auto of = [&](uint32_t block) {
-    const bool here = layer_.first_block < block && block < layer_.end_block;
-    const size_t place = here ? block - layer_.first_block : 0;
-    return here && place < model.added.size() ? model.added[place] : AddedSeconds();
-  };
-  uint32_t like = to.block;
-  if (!form.given && !donors_.IsOwnExample(like, true, form.wipes)) {
-    like = donors_.Find(like, true, file_.WipedBehind(from.block)).value_or(like);
-  }
-  const uint32_t left = form.given ? like : from.block + 1;
-  const AddedSeconds leaving = of(left).sum() > 0 ? of(left) : of(like);
-  const AddedSeconds arriving = of(like).sum() > 0 ? of(like) : leaving;
-  if (!(arriving.sum() > 0)) return model.retraction_seconds;
-  const double seconds = leaving.leaving + arriving.arriving;
-  if (form.given || !(model.slope > 0)) return seconds;
-  // A slope rises as long as the travel does, and is not made lower for a shorter one.
-  const auto lift_of = [&](uint32_t block) {
-    const Block& link = file_.blocks[block];
-    return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();
-  };
-  const double lift = std::max(lift_of(of(left).sum() > 0 ? left : like), lift_of(like));
-  const double highest = std::max(ToDouble(donors_.highest_lift()), lift);
-  const double rises = std::clamp(model.slope * mm, lift, highest);
-  const uint32_t lowered = of(like).sum() > 0 ? like : left;
-  return seconds + (rises - lift_of(lowered)) * model.descent_seconds_per_mm;
 }
 
 }  // namespace traverse::gcode

@@ -58,7 +58,12 @@ PrintMeter::PrintMeter(const MachineProfile& profile, const Dynamics& dynamics,
     : profile_(profile), dynamics_(dynamics), walls_(walls), planner_(RulesOf(profile)) {}
 
 void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
-  const MachineState& state = interpreter.state();
+  if (step.kind != StepKind::kSlot) return Follow(step, interpreter.state());
+  if ((step.slots & kDynamicsSlots) == 0) return;
+  dynamics_.Follow(step.line.Text(interpreter.text()));
+}
+
+void PrintMeter::Follow(const Step& step, const MachineState& state) {
   switch (step.kind) {
     case StepKind::kExtrude:
     case StepKind::kZeroExtrude:
@@ -86,11 +91,6 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
         return;
       }
       return Stand(step, state);
-    case StepKind::kSlot:
-      if ((step.slots & kDynamicsSlots) != 0) {
-        dynamics_.Follow(step.line.Text(interpreter.text()));
-      }
-      return;
     default:
       return;
   }

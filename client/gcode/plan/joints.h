@@ -22,12 +22,6 @@ struct Joint {
   double accel_mm_s2 = 0;
 };
 
-// Those of a travel move.
-struct TravelJoints {
-  Joint from;
-  Joint to;
-};
-
 // What printing loses by a stop at `joint`.
 double StopSeconds(const Joint& joint);
 

@@ -83,7 +83,6 @@ struct PlannedTravel {
   bool crosses = false;     // a visible wall, and there is no detour
   double mm = 0;            // including bends
   std::vector<Vertex> via;  // its bends, around walls; empty: straight
-  Vertex ahead;  // a short move ahead of it, behind which it pulls filament back if it does
 };
 
 // The same for one layer: top and bottom layers often retract where others do not.

@@ -67,8 +67,9 @@ std::vector<uint32_t> LayerWriter::PlacesOf(const LayerOrder& order) const {
 PartStart LayerWriter::WriteTravel(const Placement& before, const Placement& first,
                                    const PartStart& start, std::string& text) const {
   GcodeOut out(file_, start, text);
+  LinkParts parts(file_);
   WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, true, false,
-            out);
+            parts, out);
   out.Flush();
   return out.at;
 }
@@ -117,10 +118,11 @@ PartStart LayerWriter::WriteBarePaths(const LayerOrder& order, const PartStart& 
   PlacedPath from(file_, order.front());
   const std::vector<uint32_t> places = PlacesOf(order);
   const bool moved = !std::is_sorted(places.begin(), places.end());
+  LinkParts parts(file_);
   for (size_t i = 0; i < order.size(); ++i) {
     if (i > 0) {
       PlacedPath to(file_, order[i]);
-      WriteLink(from, to, layer_.first_block + places[i], as_sliced, moved, out);
+      WriteLink(from, to, layer_.first_block + places[i], as_sliced, moved, parts, out);
       from = std::move(to);
     }
     if (marks != nullptr) marks->push_back(text.size());
@@ -141,7 +143,7 @@ bool LayerWriter::IsGiven(const LayerOrder& order) const {
 // `place` is the block that stands here in the file. `moved`: objects of the layer have changed
 // places, so that lines of progress stand by the time, between objects too.
 void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
-                            bool as_sliced, bool moved, GcodeOut& out) const {
+                            bool as_sliced, bool moved, LinkParts& parts, GcodeOut& out) const {
   // Two objects that still follow each other keep what stands between them, if it is of no other
   // use there than what stands in this place.
   const uint32_t own = to.placement().block;
@@ -153,7 +155,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   LinkForm form = links_.FormOf(from.placement(), end, to.placement(), place);
   if (!as_sliced) links_.Hide(from.placement(), to.placement(), /*bends=*/true, form);
   form.without_progress = !form.boundary || moved;
-  PrintLink(LinkComposer(file_, donors_, from, to, form, out.at.machine).Compose(), out);
+  PrintLink(LinkComposer(parts, donors_, from, to, form, out.at.machine).Compose(), out);
 }
 
 }  // namespace traverse::gcode

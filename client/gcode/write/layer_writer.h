@@ -11,6 +11,7 @@
 
 #include "client/gcode/link/layer_links.h"
 #include "client/gcode/link/link_donors.h"
+#include "client/gcode/link/link_parts.h"
 #include "client/gcode/link/travel_totals.h"
 #include "client/gcode/model/part_start.h"
 #include "client/gcode/model/placed_path.h"
@@ -37,6 +38,7 @@ class LayerWriter {
   LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&,
               const Room* = nullptr, bool = true, const TravelModel* = nullptr) = delete;
 
+  const GcodeFile& file() const { return file_; }
   const VisibleWalls& walls() const { return links_.walls(); }
   const Room* room() const { return links_.room(); }
   const std::vector<Outline>& outlines() const { return links_.outlines(); }
@@ -72,8 +74,14 @@ class LayerWriter {
 
   // See LayerLinks.
   TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                              const TravelModel& model) const {
-    return links_.EstimateTravel(place, from, to, model);
+                              LinkParts& parts) const {
+    return links_.EstimateTravel(place, from, to, parts);
+  }
+
+  // The same, asked once.
+  TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to) const {
+    LinkParts parts(file_);
+    return EstimateTravel(place, from, to, parts);
   }
 
  private:
@@ -82,7 +90,7 @@ class LayerWriter {
   // The text of the layer is that of the file.
   bool StaysAsText(const LayerOrder& order, const PartStart& start, bool as_sliced) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, bool as_sliced,
-                 bool moved, GcodeOut& out) const;
+                 bool moved, LinkParts& parts, GcodeOut& out) const;
 
   const GcodeFile& file_;
   const Layer& layer_;

@@ -42,7 +42,7 @@ class LayerWriterDepartures : public ::testing::Test {
   TravelTotals Estimated(const LayerOrder& order) const {
     TravelTotals sum;
     for (size_t i = 1; i < order.size(); ++i) {
-      sum += writer_->EstimateTravel(i, order[i - 1], order[i], TravelModel());
+      sum += writer_->EstimateTravel(i, order[i - 1], order[i]);
     }
     return sum;
   }
@@ -75,8 +75,7 @@ TEST_F(LayerWriterDepartures, ThatEndNearAWallAreNotMadeAcrossIt) {
   Draw(.1, .3);
   const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
 
-  EXPECT_NEAR(writer_->EstimateTravel(1, order[0], order[1], TravelModel()).mm, std::hypot(2, 2),
-              .01);
+  EXPECT_NEAR(writer_->EstimateTravel(1, order[0], order[1]).mm, std::hypot(2, 2), .01);
   EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
 }
 
@@ -86,8 +85,8 @@ TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
   EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
   const double straight = std::hypot(5, 7);
   const double bent = std::hypot(.4, .4) + std::hypot(4.6, 6.6);
-  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[2], TravelModel()).mm, bent, .001);
-  EXPECT_GT(writer_->EstimateTravel(1, given_[0], given_[2], TravelModel()).seconds,
+  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[2]).mm, bent, .001);
+  EXPECT_GT(writer_->EstimateTravel(1, given_[0], given_[2]).seconds,
             StopToStopSeconds(straight, 150, 1250));
 }
 
@@ -107,7 +106,7 @@ TEST_F(LayerWriterDepartures, TurnWithTheStartOfTheLoop) {
 
 TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
   const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
-  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[1], TravelModel()).seconds,
+  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[1]).seconds,
               StopToStopSeconds(straight, 150, 1250), .005);
 }
 
@@ -127,7 +126,7 @@ TEST(LayerWriter, DepartsFromALoopBegunElsewhereAcrossNoWall) {
     const PartStart start = StartOfPaths(*file, order.front());
     std::string text;
     writer.WritePaths(order, start, text);
-    const TravelTotals estimated = writer.EstimateTravel(1, order[0], order[1], TravelModel());
+    const TravelTotals estimated = writer.EstimateTravel(1, order[0], order[1]);
     EXPECT_EQ(estimated.open, 0);
     const bool departs = text.find("X9.600000 Y0.400000") != std::string::npos ||
                          text.find("X9.600000 Y9.600000") != std::string::npos;

@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/joints.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/write/layer_writer.h"
 #include "engine/base/rng.h"
@@ -33,6 +36,51 @@ bool HasScripts(const GcodeFile& file, const Layer& layer) {
   });
 }
 
+// Two points apart it is a line, which has one speed.
+bool IsStraight(const LayerWriter& writer, const Placement& path) {
+  const uint32_t first = writer.GivenOrder().front().block;
+  return writer.outlines()[path.block - first].points.size() == 2;
+}
+
+// The file's layer in an order, as it is written.
+class WrittenLayer {
+ public:
+  WrittenLayer(const LayerWriter& writer, const LayerOrder& order)
+      : file_(writer.file()), start_(StartOfPaths(file_, order.front())) {
+    writer.WriteBarePaths(order, start_, text_, &marks_);
+    Interpreter interpreter(text_, 0, start_.machine);
+    PartStart at = start_;
+    for (Step step; interpreter.Next(step);) {
+      while (states_.size() < marks_.size() && marks_[states_.size()] <= step.line.begin) {
+        states_.push_back(at);
+      }
+      if (step.kind == StepKind::kSlot) {
+        ApplySetter(at.state, file_.setters.Find(step.line.Text(text_)), step.slots);
+      }
+      at.machine = interpreter.state();
+    }
+    states_.resize(marks_.size(), at);
+  }
+
+  // The seconds of the link to `place`: of both paths with it, less those of each alone.
+  double LinkSeconds(size_t place) const {
+    return Seconds(2 * place - 2, 2 * place + 1) - Seconds(2 * place - 2, 2 * place - 1) -
+           Seconds(2 * place, 2 * place + 1);
+  }
+
+ private:
+  double Seconds(size_t from, size_t to) const {
+    const auto part = std::string_view(text_).substr(marks_[from], marks_[to] - marks_[from]);
+    return Measure(file_, part, states_[from]).seconds;
+  }
+
+  const GcodeFile& file_;
+  const PartStart start_;
+  std::string text_;
+  std::vector<size_t> marks_;
+  std::vector<PartStart> states_;  // [mark]
+};
+
 TEST_P(DecidedLinks, RetractAsOftenAsIsWritten) {
   const auto read = ReadGcode(testing::TextOf(GetParam()), "part.gcode");
   ASSERT_TRUE(read.ok()) << read.status();
@@ -53,10 +101,45 @@ TEST_P(DecidedLinks, RetractAsOftenAsIsWritten) {
     const std::vector<uint32_t> places = writer.PlacesOf(order);
     for (size_t place = 1; place < order.size(); ++place) {
       const TravelTotals link =
-          writer.EstimateTravel(places[place], order[place - 1], order[place], TravelModel());
+          writer.EstimateTravel(places[place], order[place - 1], order[place]);
       decided += link.retractions;
     }
     EXPECT_EQ(decided, Measure(file, text, start).retractions) << "layer " << i;
+  }
+}
+
+// But for what both paths lose by standing still there.
+TEST_P(DecidedLinks, TakeAsLongAsIsWrittenIfTheyRetract) {
+  const auto read = ReadGcode(testing::TextOf(GetParam()), "part.gcode");
+  ASSERT_TRUE(read.ok()) << read.status();
+  const GcodeFile& file = **read;
+  const RetractionHabit habit = HabitOfNewTravels(file);
+  const LinkDonors donors(file);
+  Rng rng(1);
+  for (size_t i = 0; i < file.layers.size(); i += 1 + file.layers.size() / kLayers) {
+    const Layer& layer = file.layers[i];
+    if (HasScripts(file, layer)) continue;
+    const LayerWriter writer(file, layer, habit, donors);
+    const LayerJoints joints(file, layer, writer.outlines());
+    const LayerOrder order =
+        testing::RandomOrder(layer, MakeLayerPlan(file, layer, Policy::kFree).plan, rng);
+    const std::vector<uint32_t> places = writer.PlacesOf(order);
+    const WrittenLayer written(writer, order);
+    LinkParts parts(file);
+    double off = 0;
+    int64_t links = 0;
+    for (size_t place = 1; place < order.size(); ++place) {
+      const Placement& from = order[place - 1];
+      const Placement& to = order[place];
+      const TravelTotals link = writer.EstimateTravel(places[place], from, to, parts);
+      if (link.retractions == 0 || !IsStraight(writer, from) || !IsStraight(writer, to)) continue;
+      const double stops = StopSeconds(joints.EndOf(from.block - layer.first_block, from.entry)) +
+                           StopSeconds(joints.BeginOf(to.block - layer.first_block, to.entry));
+      const double restart = joints.RestartSeconds(to.block - layer.first_block, to.entry);
+      off += std::abs(link.seconds - restart - stops - written.LinkSeconds(place));
+      ++links;
+    }
+    EXPECT_LE(off, .001 * static_cast<double>(links)) << "layer " << i << ", " << links << " links";
   }
 }
 

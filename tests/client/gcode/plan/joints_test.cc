@@ -7,10 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
-#include "client/gcode/plan/travel_model.h"
-#include "client/gcode/plan/travel_rules.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {
@@ -70,80 +67,6 @@ TEST(LayerJoints, BehindACornerAShortSegmentIsTooShortToGetGoing) {
 TEST(StopSeconds, AreWhatGettingGoingLoses) {
   EXPECT_NEAR(StopSeconds({{1, 0}, 20, 1250}), .008, 1e-12);
   EXPECT_EQ(StopSeconds({}), 0);
-}
-
-constexpr TravelModel kTravel = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
-constexpr double kTurnBack = -1;
-
-// Of a travel move of 20 mm along x, joined to paths that lead along (x, 0).
-double JoinedSeconds(double x) {
-  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Read();
-  PlannedTravel travel;
-  travel.from = {10, 0};
-  travel.to = {30, 0};
-  const Joint joint{{x, 0}, 20, 1250};
-  const TravelJoints joints{joint, joint};
-  return NewTravelSeconds(*file, 0, travel, kTravel, &joints);
-}
-
-TEST(NewTravelSeconds, StraightOnNothingIsLost) {
-  // From 20 mm/s up to 100 and down again.
-  const double ramps_mm = (100.0 * 100 - 20 * 20) / 1000;
-
-  EXPECT_NEAR(JoinedSeconds(1), 2 * (100.0 - 20) / 1000 + (20 - ramps_mm) / 100, 1e-9);
-}
-
-TEST(NewTravelSeconds, TurningBackLosesNearlyWhatAStopDoes) {
-  const double stop = StopToStopSeconds(20, 100, 1000) + 2 * StopSeconds({{1, 0}, 20, 1250});
-
-  EXPECT_LT(JoinedSeconds(kTurnBack), stop);
-  EXPECT_GT(JoinedSeconds(kTurnBack), stop - .015);
-}
-
-// Straight on a way takes less than it would with printing stopped.
-TEST(TravelSeconds, JoinThePathsLikeNewOnes) {
-  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Go(30, 0).Infill(40, 0).Read();
-  const Joint joint{{1, 0}, 20, 1250};
-  const TravelJoints joints{joint, joint};
-
-  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel, true, &joints), JoinedSeconds(1), 1e-9);
-}
-
-// Joined as where nothing is retracted, but for the stops: at the end of the move inwards, which
-// leads straight on from the path, and before the next path.
-TEST(TravelSeconds, StopForARetractionLikeNewOnes) {
-  Sketch sketch;
-  sketch.Infill(10, 0).Go(10.4, 0).Add("G1 E-.8 F2100").Go(30, 0).Add("G1 E.8 F2100");
-  const std::shared_ptr<GcodeFile> file = sketch.Infill(40, 0).Read();
-  const Joint joint{{1, 0}, 20, 1250};
-  const TravelJoints joints{joint, joint};
-  PlannedTravel travel;
-  travel.ahead = {.4, 0};
-  travel.from = {10.4, 0};
-  travel.to = {30, 0};
-  travel.retracts = true;
-
-  const double seconds = TravelSeconds(*file, 1, kTravel, true, &joints);
-  EXPECT_NEAR(seconds, NewTravelSeconds(*file, 0, travel, kTravel, &joints), 1e-9);
-  // The path is left at 20 mm/s, which end with the move inwards.
-  const double stops = 2 * StopSeconds(joint) + StopToStopSeconds(.4, 100, 1000);
-  EXPECT_LT(seconds, StopToStopSeconds(19.6, 100, 1000) + stops);
-  EXPECT_GT(seconds, StopToStopSeconds(19.6, 100, 1000) + StopSeconds(joint));
-}
-
-TEST(NewTravelSeconds, ARetractionAtOnceStopsAtBothPaths) {
-  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Read();
-  const Joint joint{{1, 0}, 20, 1250};
-  const TravelJoints joints{joint, joint};
-  PlannedTravel travel;
-  travel.from = {10, 0};
-  travel.to = {30, 0};
-  travel.retracts = true;
-  const double straight = StopToStopSeconds(20, 100, 1000) + 2 * StopSeconds(joint);
-
-  EXPECT_NEAR(NewTravelSeconds(*file, 0, travel, kTravel, &joints), straight, 1e-9);
-  travel.via = {{20, 0}};
-  EXPECT_NEAR(NewTravelSeconds(*file, 0, travel, kTravel, &joints), straight, 1e-6);
 }
 
 // Both travel moves are of the same length and angle: between them is what the loop takes by

@@ -50,21 +50,7 @@ TEST(TravelSeconds, AreWithoutTheShortMoveInwards) {
   EXPECT_GT(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
 }
 
-// Where filament is pulled back the machine stands still, though the travel leads straight on.
-TEST(TravelSeconds, StopWhereFilamentIsPulledBack) {
-  Sketch sketch;
-  sketch.Infill(10, 0).Go(30, 0).Add("G1 E-.8 F2100").Go(50, 0).Add("G1 E.8 F2100");
-  const std::shared_ptr<GcodeFile> file = sketch.Infill(60, 0).Read();
-  ASSERT_EQ(file->blocks.size(), 2u);
-
-  const TravelJoints none;
-  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel, true, &none),
-              2 * StopToStopSeconds(20, 100, 1000), 1e-6);
-  // Else what that costs is in the price of the retraction.
-  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
-}
-
-// So what the stop costs there is a part of the travel and of the price, and not of the retraction.
+// What the stop costs there is a part of the travel and of the price, and not of the retraction.
 TEST(LearnTravel, ARetractionDoesNotPayForTheStopBehindTheMoveInwards) {
   const auto learnt = [](double inwards) {
     Sketch sketch;
@@ -138,48 +124,6 @@ TEST(LearnTravel, RetractionsAtMarksCountWhereThereAreNoOthers) {
   ASSERT_NE(file->blocks[2].link & kLinkSplits, 0);
 
   EXPECT_GT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.04);
-}
-
-TEST(LearnTravel, KnowsWhatEachRetractionAdds) {
-  Sketch sketch;
-  sketch.Infill(10, 0).GoRetracted(0, 10).Infill(10, 10).Go(10, 11).Infill(0, 11);
-  sketch.Add("G1 E-1.6 F2100").Go(0, 20).Add("G1 E1.6 F2100").Infill(10, 20);
-  const std::shared_ptr<GcodeFile> file = sketch.Read();
-
-  const TravelModel model = LearnTravel(*file, 1.5)[0];
-
-  ASSERT_EQ(model.added.size(), 4u);
-  EXPECT_EQ(model.added[0].sum(), 0);
-  EXPECT_GT(model.added[1].sum(), 0);
-  EXPECT_EQ(model.added[2].sum(), 0);
-  EXPECT_GT(model.added[3].sum(), model.added[1].sum() + .04);
-  EXPECT_NEAR(model.added[1].sum() + model.added[3].sum(), 2 * model.retraction_seconds, 1e-6);
-}
-
-// A prime ten times as slow as its retraction: 0.23 s behind the travel, and the rest ahead of it.
-TEST(LearnTravel, TellsWhatIsAddedAheadOfTheTravelFromWhatIsBehindIt) {
-  Sketch sketch;
-  sketch.Infill(10, 0).Add("G1 E-.8 F2100").Go(0, 10).Add("G1 E.8 F210").Infill(10, 10);
-  const std::shared_ptr<GcodeFile> file = sketch.Read();
-
-  const AddedSeconds added = LearnTravel(*file, 1.5)[0].added[1];
-
-  EXPECT_NEAR(added.leaving, .8 / 35, .03);
-  EXPECT_NEAR(added.arriving, .8 / 3.5, .03);
-}
-
-TEST(LearnTravel, KnowsHowHeadsRiseOnTheirTravel) {
-  const auto learnt = [](const std::string& travel, const std::string& down) {
-    Sketch sketch;
-    sketch.Infill(10, 0).Add("G1 E-.8 F2100").Add(travel).Add(down).Add("G1 E.8 F2100");
-    return LearnTravel(*sketch.Infill(40, 40).Read(), 1.5)[0];
-  };
-  const TravelModel rising = learnt("G1 X10 Y40 Z.6 F9000", "G1 Z.2 F600");
-  EXPECT_NEAR(rising.slope, .01, 1e-9);
-  EXPECT_NEAR(rising.descent_seconds_per_mm, .1, 1e-9);
-  const TravelModel level = learnt("G1 Z.6 F600\nG1 X10 Y40 F9000", "G1 Z.2 F600");
-  EXPECT_EQ(level.slope, 0);
-  EXPECT_EQ(level.descent_seconds_per_mm, 0);
 }
 
 }  // namespace

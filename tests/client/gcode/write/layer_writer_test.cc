@@ -36,7 +36,7 @@ TEST(LayerWriter, CountsAWayFromWhereALoopBegunElsewhereEnds) {
 
   writer.WritePaths(order, start, text);
 
-  EXPECT_NEAR(writer.EstimateTravel(1, order[0], order[1], TravelModel()).mm, 2.1, 1e-6) << text;
+  EXPECT_NEAR(writer.EstimateTravel(1, order[0], order[1]).mm, 2.1, 1e-6) << text;
   EXPECT_NEAR(Measure(*file, text, start).travel_mm, 2.1 + 5, 1e-6) << text;
 }
 
@@ -54,7 +54,7 @@ TEST(LayerWriter, NothingIsRetractedWhereThereIsNoTravelToGo) {
 
   writer.WritePaths(order, start, text);
 
-  EXPECT_EQ(writer.EstimateTravel(2, order[1], order[2], TravelModel()).retractions, 0) << text;
+  EXPECT_EQ(writer.EstimateTravel(2, order[1], order[2]).retractions, 0) << text;
   EXPECT_EQ(Measure(*file, text, start).retractions, 2) << text;
 }
 
@@ -72,7 +72,7 @@ TravelTotals FromSquareToLine(bool goes_on) {
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder given = writer.GivenOrder();
-  return writer.EstimateTravel(1, given[0], given[2], TravelModel());
+  return writer.EstimateTravel(1, given[0], given[2]);
 }
 
 // Behind the end of a wall the nozzle goes on along it, and is then on the other side of a corner.
@@ -92,8 +92,8 @@ TEST(LayerWriter, AWayStraightOnTakesLessTimeThanOneRoundACorner) {
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder given = writer.GivenOrder();
 
-  const double straight = writer.EstimateTravel(1, given[0], given[1], TravelModel()).seconds;
-  const double bent = writer.EstimateTravel(2, given[1], given[2], TravelModel()).seconds;
+  const double straight = writer.EstimateTravel(1, given[0], given[1]).seconds;
+  const double bent = writer.EstimateTravel(2, given[1], given[2]).seconds;
 
   EXPECT_LT(straight, bent - .01);
 }
@@ -181,8 +181,7 @@ class LayerWriterWipes : public ::testing::Test {
 
   TravelTotals Estimate(const Placement& from, const Placement& to) const {
     const LinkDonors donors(*file_);
-    return LayerWriter(*file_, file_->layers[0], habit_, donors)
-        .EstimateTravel(3, from, to, TravelModel());
+    return LayerWriter(*file_, file_->layers[0], habit_, donors).EstimateTravel(3, from, to);
   }
 
   // The estimate is what is written, for travel moves that begin with a wipe and for others.
@@ -197,7 +196,7 @@ class LayerWriterWipes : public ::testing::Test {
       writer.WritePaths(order, start, text);
       TravelTotals travels;
       for (size_t i = 1; i < order.size(); ++i) {
-        travels += writer.EstimateTravel(i, order[i - 1], order[i], TravelModel());
+        travels += writer.EstimateTravel(i, order[i - 1], order[i]);
       }
 
       EXPECT_NEAR(travels.mm, Measure(*file_, text, start).travel_mm, 1e-3) << text;
@@ -225,9 +224,8 @@ TEST(LayerWriter, CountsOfAWayPastALabelWhatLiesBetweenThePaths) {
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
 
-  const TravelTotals as_given =
-      writer.EstimateTravel(2, {1, 0, false}, {2, 0, false}, TravelModel());
-  const TravelTotals turned = writer.EstimateTravel(2, {1, 1, false}, {2, 0, false}, TravelModel());
+  const TravelTotals as_given = writer.EstimateTravel(2, {1, 0, false}, {2, 0, false});
+  const TravelTotals turned = writer.EstimateTravel(2, {1, 1, false}, {2, 0, false});
 
   EXPECT_NEAR(as_given.mm, std::hypot(10, 5), 1e-3);
   EXPECT_NEAR(turned.mm, 5, 1e-3);
@@ -246,9 +244,8 @@ TEST(LayerWriter, CountsOfAWayBehindAScriptWhatFollowsIt) {
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
 
-  const TravelTotals as_given =
-      writer.EstimateTravel(2, {1, 0, false}, {2, 0, false}, TravelModel());
-  const TravelTotals turned = writer.EstimateTravel(2, {1, 0, false}, {2, 1, false}, TravelModel());
+  const TravelTotals as_given = writer.EstimateTravel(2, {1, 0, false}, {2, 0, false});
+  const TravelTotals turned = writer.EstimateTravel(2, {1, 0, false}, {2, 1, false});
 
   EXPECT_NEAR(as_given.mm, 40, 1e-3);
   EXPECT_NEAR(turned.mm, std::hypot(30, 0), 1e-3);
@@ -264,9 +261,10 @@ TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   EXPECT_NEAR(on.mm, 2 + std::hypot(8, 20), 1e-3);
   EXPECT_NEAR(back.mm, 2 + std::hypot(2, 20), 1e-3);
   EXPECT_LT(back.seconds, on.seconds);
-  // A wipe takes as long wherever the travel leads.
-  constexpr double kStopSeconds = 20 / (2 * 1250.0);  // of the path behind it
-  EXPECT_NEAR(on.seconds, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds, 1e-6);
+  // A wipe takes as long wherever the travel leads, but for the corner between the two.
+  const double shorter = StopToStopSeconds(std::hypot(8, 20), 150, 1250) -
+                         StopToStopSeconds(std::hypot(2, 20), 150, 1250);
+  EXPECT_NEAR(on.seconds - back.seconds, shorter, .005);
   EXPECT_EQ(on.retractions, 1);
   // The other direction knows nothing of a wipe.
   EXPECT_NEAR(Estimate({3, 0, false}, {1, 0, false}).mm, std::hypot(10, 20), 1e-3);

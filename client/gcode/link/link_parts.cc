@@ -1,0 +1,30 @@
+#include "client/gcode/link/link_parts.h"
+
+namespace traverse::gcode {
+
+void LinkParts::MakeRoom(size_t more) {
+  kept_ += more;
+  if (kept_ <= kMostKept) return;
+  links_.clear();
+  paths_.clear();
+  kept_ = more;
+}
+
+std::shared_ptr<const Link> LinkParts::LinkTo(uint32_t block) {
+  const auto found = links_.find(block);
+  if (found != links_.end()) return found->second;
+  auto link = std::make_shared<const Link>(ReadLink(file_, block));
+  MakeRoom(link->steps.size() + 1);
+  return links_.emplace(block, std::move(link)).first->second;
+}
+
+std::shared_ptr<const PlacedPath> LinkParts::PathOf(const Placement& placement) {
+  const std::pair key(placement.block, placement.entry);
+  const auto found = paths_.find(key);
+  if (found != paths_.end()) return found->second;
+  auto path = std::make_shared<const PlacedPath>(file_, placement);
+  MakeRoom(path->body().segments.size() + 1);
+  return paths_.emplace(key, std::move(path)).first->second;
+}
+
+}  // namespace traverse::gcode
