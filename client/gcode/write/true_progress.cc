@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -60,6 +62,84 @@ bool SaysLayer(std::string_view line) {
          (small.starts_with("m73") && absl::StrContains(small, "l"));
 }
 
+// Copies a text with some of its lines of progress elsewhere: where a deposit begins, or where such
+// a line was, whichever of the two around its moment is nearer.
+class Mover {
+ public:
+  // `moments`: [line of progress of `text`] when it is true, or unset if it stays.
+  Mover(std::string_view text, const ProgressMoments& is,
+        const std::vector<std::optional<double>>& moments)
+      : text_(text), is_(is), moments_(moments) {
+    out_.reserve(text.size());
+  }
+
+  // The next step of the text, which begins after `seconds`.
+  void Take(const Step& step, double seconds) {
+    if (step.kind == StepKind::kProgress) {
+      if (moments_[seen_]) {
+        TakeOut(step.line, seconds);
+      } else {
+        PassBy(step.line);
+      }
+      ++seen_;
+    } else if (step.kind == StepKind::kExtrude || seconds >= is_.seconds) {
+      PutUpTo(step.line.begin, seconds);
+    }
+  }
+
+  std::string Finish() {
+    Copy(text_.size());
+    while (next_ < moments_.size()) Put();
+    return std::move(out_);
+  }
+
+ private:
+  void Copy(size_t end) {
+    out_.append(text_.substr(copied_, end - copied_));
+    copied_ = end;
+  }
+
+  void Put() {
+    const ProgressMoment& line = is_.lines[next_++];
+    out_.append(text_.substr(line.begin, line.end - line.begin));
+  }
+
+  void TakeOut(const Line& line, double seconds) {
+    PutUpTo(line.begin, seconds);
+    Copy(line.begin);
+    place_ = copied_ = line.next;
+  }
+
+  // Those that are to stand before a line that stays do so at the latest there.
+  void PassBy(const Line& line) {
+    Copy(line.begin);
+    while (next_ < seen_) Put();
+    ++next_;
+  }
+
+  // Puts those whose moment is over at `here`, or at the place before.
+  void PutUpTo(size_t here, double seconds) {
+    while (next_ < moments_.size() && moments_[next_] && *moments_[next_] <= seconds) {
+      const double moment = *moments_[next_];
+      const bool before = place_ > 0 && place_ >= copied_;
+      Copy(before && moment - place_seconds_ < seconds - moment ? place_ : here);
+      Put();
+    }
+    place_ = here;
+    place_seconds_ = seconds;
+  }
+
+  const std::string_view text_;
+  const ProgressMoments& is_;
+  const std::vector<std::optional<double>>& moments_;
+  std::string out_;
+  size_t copied_ = 0;  // of the text
+  size_t next_ = 0;    // line to put
+  size_t seen_ = 0;    // lines that have been passed
+  size_t place_ = 0;   // the last one where a line may stand
+  double place_seconds_ = 0;
+};
+
 }  // namespace
 
 std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_view text) {
@@ -67,56 +147,22 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
   const ProgressMoments was = MomentsOf(file, file.text);
   const ProgressMoments is = MomentsOf(file, text);
   if (was.lines.size() != is.lines.size()) return std::nullopt;
-  std::vector<bool> goes(is.lines.size(), false);
-  for (size_t i = 0; i < goes.size(); ++i) {
+  std::vector<std::optional<double>> moments(is.lines.size());
+  bool any = false;
+  for (size_t i = 0; i < moments.size(); ++i) {
     const ProgressMoment& line = is.lines[i];
-    goes[i] = line.in_print && std::abs(line.share - was.lines[i].share) > kMostOff &&
-              !SaysLayer(text.substr(line.begin, line.end - line.begin));
-  }
-  if (std::find(goes.begin(), goes.end(), true) == goes.end()) return std::nullopt;
-  std::string out;
-  out.reserve(text.size());
-  size_t copied = 0;  // of `text`
-  size_t next = 0;    // of the lines of progress
-  const auto write = [&](size_t end) {
-    out.append(text.substr(copied, end - copied));
-    copied = end;
-  };
-  const auto put_next = [&] {
-    const ProgressMoment& line = is.lines[next++];
-    out.append(text.substr(line.begin, line.end - line.begin));
-  };
-  size_t seen = 0;  // lines of progress that have been passed
-  // The deposit before, in front of which a line may stand as well.
-  size_t last = 0;
-  double last_seconds = 0;
-  const auto visit = [&](const Step& step, double seconds) {
-    if (step.kind == StepKind::kProgress) {
-      const size_t here = seen++;
-      write(step.line.begin);
-      // Those that are to stand before one that stays do so at the latest there.
-      while (!goes[here] && next < here) put_next();
-      if (goes[here]) {
-        copied = step.line.next;
-      } else {
-        ++next;
-      }
-    } else if (step.kind == StepKind::kExtrude || seconds >= is.seconds) {
-      while (next < goes.size() && goes[next]) {
-        const double wanted = was.lines[next].share * is.seconds;
-        if (wanted > seconds) break;
-        const bool before = last > 0 && last >= copied && wanted - last_seconds < seconds - wanted;
-        write(before ? last : step.line.begin);
-        put_next();
-      }
-      last = step.line.begin;
-      last_seconds = seconds;
+    if (!line.in_print || std::abs(line.share - was.lines[i].share) <= kMostOff ||
+        SaysLayer(text.substr(line.begin, line.end - line.begin))) {
+      continue;
     }
-  };
-  MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
-  write(text.size());
-  while (next < goes.size()) put_next();
-  return out;
+    moments[i] = was.lines[i].share * is.seconds;
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  Mover mover(text, is, moments);
+  MeasureMoments(file, text, StartOfFile(file), nullptr,
+                 [&mover](const Step& step, double seconds) { mover.Take(step, seconds); });
+  return mover.Finish();
 }
 
 }  // namespace traverse::gcode

@@ -88,6 +88,20 @@ TEST(WithTrueProgress, GoesToTheNearerSideOfATravel) {
   EXPECT_EQ(PrintedBefore(*moved, "M73 Q50\n"), 1);
 }
 
+// Between two long travel moves its own place is the nearest to its moment.
+TEST(WithTrueProgress, StaysAmidLongTravel) {
+  const auto travels = [](int seconds) {
+    std::string text = Travelling({0, seconds, 0, 8, 0});
+    const std::string told = "M73 P50\nM73 Q50\n";
+    return text.insert(text.find(told), "G1 X-10 Y2 F150\n");
+  };
+  const auto file = Read(travels(4));
+  const std::string text = travels(0);
+
+  // 60 % are over then, and 52 % where it is; the deposits around it begin at 10 and 90 %.
+  EXPECT_EQ(WithTrueProgress(*file, text), text);
+}
+
 TEST(WithTrueProgress, StaysWhereItIsTrue) {
   const std::string text = Layers(SlowUpTo(5), M73);
 
