@@ -46,7 +46,10 @@ using FileResult = std::variant<T, FileFault>;
 // What a search has to do.
 struct SearchWork {
   std::vector<double> layers;  // [layer] its share, in paths and points
-  double stages_behind = 0;    // what follows takes as long as this search, about so many times
+  double seconds_before = 0;   // of the searches before this one
+
+  // What follows takes as long as this search and those before it, about so many times.
+  double stages_behind = 0;
 };
 
 // Called while the service searches, on the calling thread. Each may be empty.
@@ -84,7 +87,9 @@ struct SearchOptions {
 
   SearchProgress progress = {};
 
-  double stages_behind = 0;  // see SearchWork
+  // See SearchWork.
+  double seconds_before = 0;
+  double stages_behind = 0;
 };
 
 // Runs one search of `job`. Errors are the service's.

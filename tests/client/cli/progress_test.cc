@@ -29,15 +29,24 @@ TEST(Progress, BarShowsLayersGainAndTimeLeft) {
 // work takes 2 s. So the search takes 38 s, and two stages behind it as long again.
 TEST(Progress, TimeLeftGoesByWorkSinceTheFirstLayerAndByWhatFollows) {
   Progress progress(Progress::Style::kLines, "auto", 3);
-  progress.Expect({{10, 10, 80}, 2});
+  progress.Expect({{10, 10, 80}, 0, 2});
   progress.Take(Layer(0, 0), absl::Seconds(20));
   progress.Take(Layer(0, 0), absl::Seconds(22));
   EXPECT_EQ(progress.Text(absl::Seconds(22), 80), "auto: 2/3 layers, 1 min 32 s left");
 }
 
+// The same after another search of a minute, and what follows takes half as long as both.
+TEST(Progress, WhatFollowsAllSearchesIsToldByAllOfThem) {
+  Progress progress(Progress::Style::kLines, "auto", 3);
+  progress.Expect({{10, 10, 80}, 60, 0.5});
+  progress.Take(Layer(0, 0), absl::Seconds(20));
+  progress.Take(Layer(0, 0), absl::Seconds(22));
+  EXPECT_EQ(progress.Text(absl::Seconds(22), 80), "auto: 2/3 layers, 1 min 5 s left");
+}
+
 TEST(Progress, TellsNoTimeLeftAfterASmallLayerAlone) {
   Progress progress(Progress::Style::kLines, "auto", 3);
-  progress.Expect({{500, 1, 499}, 2});
+  progress.Expect({{500, 1, 499}, 0, 2});
   progress.Take(Layer(0, 0), absl::Seconds(12));
   v1::LayerResult small = Layer(0, 0);
   small.set_index(1);
