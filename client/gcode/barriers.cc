@@ -25,6 +25,7 @@ enum Cause : uint8_t {
   kUnknownLine,
   kToolChange,
   kTower,
+  kScript,
   kPrintedOddly,
   kObjectLabel,
   kKnownLine,
@@ -109,7 +110,8 @@ class LayerTally {
     }
     for (Tally& tally : tallies_.of) tally.layers = tally.paths > 0 ? 1 : 0;
     if (tallies_.of[kObjectLabel].paths > 0) {
-      tallies_.objects = objects.ObjectsOf(layer_, freedom_).barrier;
+      const LayerObjects of_layer = objects.ObjectsOf(layer_, freedom_);
+      if (of_layer.runs.empty()) tallies_.objects = of_layer.barrier;
     }
     return tallies_;
   }
@@ -129,11 +131,13 @@ class LayerTally {
     const uint32_t kept = std::min(SizeOfGroup(path), path - freedom_.group[path - 1]);
     const auto is = [&](uint32_t of, Feature feature) { return outlines_[of].feature == feature; };
     for (const uint32_t one : {path - 1, path}) {
-      if (is(one, Feature::kTower) || is(one, Feature::kCustom)) {
-        return Note(kTower, kept, UINT32_MAX);
+      const Block& kept_block = file_.blocks[layer_.first_block + one];
+      if (is(one, Feature::kTower)) return Note(kTower, kept, UINT32_MAX);
+      if (is(one, Feature::kCustom) || (kept_block.flags & kBlockScript) != 0) {
+        return Note(kScript, kept, kept_block.begin);
       }
-      if ((file_.blocks[layer_.first_block + one].flags & kBlockPinned) != 0) {
-        return Note(kPrintedOddly, kept, file_.blocks[layer_.first_block + one].begin);
+      if ((kept_block.flags & kBlockPinned) != 0) {
+        return Note(kPrintedOddly, kept, kept_block.begin);
       }
     }
     const bool by_line =
@@ -208,24 +212,27 @@ std::string Place(const GcodeFile& file, Offset at) {
 struct CauseWords {
   const char* holds;
   const char* frees;
+  const char* under_free = nullptr;  // instead, where --policy=free is asked for already
 };
 constexpr std::array<CauseWords, kCauses> kWords = {{
     {"stay beside commands that are not known here, the first of them $0",
-     "without them in the slicer's custom G-code they could move"},
+     "taken out of the slicer's custom G-code, such commands would hold nothing"},
     {"stay on one side of a change of tool or filament, the first of them in $1",
-     "fewer changes in a layer let more of them move"},
-    {"stay beside the wipe tower or a script, which nothing passes",
-     "without the tower in the slicer's settings they could move"},
+     "fewer such changes within a layer would hold less"},
+    {"stay beside the wipe tower, which nothing passes",
+     "without it (\"Prime tower\", \"Wipe tower\" in the slicer) more could move"},
+    {"are in or beside what a script prints, such as a purge line (first in $1)",
+     "only the slicer's start or custom G-code changes that"},
     {"are printed rising, as spiral vases and scarf seams are, or with the filament retracted, the "
      "first of them in $1",
-     "with these off in the slicer they could move"},
+     "with spiral vase and scarf seams off in the slicer more could move"},
     {"stay within the label of an object, the first of which is $0",
-     "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") they could "
-     "mix"},
+     "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") paths of "
+     "several could mix"},
     {"stay on one side of a line that nothing passes, the first of them $0",
-     "without such lines in the slicer's custom G-code they could move"},
+     "taken out of the slicer's custom G-code, such lines would hold nothing"},
     {"stay on one side of a change of the fan",
-     "--allow=fan_order or --policy=free lets them move, or the same fan speed for bridges and "
+     "--allow=fan_order or --policy=free would free more, or the same fan speed for bridges and "
      "overhangs in the slicer"},
     {"are walls that touch and keep their order",
      "--allow=wall_order or --policy=free lets them change places"},
@@ -233,9 +240,10 @@ constexpr std::array<CauseWords, kCauses> kWords = {{
      "--allow=infill_order lets them change places"},
     {"are lines of surfaces, bridges or ironing and what lies under them, in the order of the "
      "slicer",
-     "monotonic lines may mix with --policy=free or with another pattern in the slicer"},
+     "monotonic lines may mix with --policy=free or with another pattern in the slicer",
+     "another pattern of surfaces in the slicer, or no ironing, would hold less"},
     {"are supports and what rests on them, in the order in which the slicer has them",
-     "no flag changes that"},
+     "no flag changes that, only another support in the slicer"},
     {"are alone in a layer", "nothing can change places there"},
 }};
 
@@ -251,7 +259,7 @@ std::string OfOne(std::string_view holds) {
   return absl::StrCat(std::string(holds.substr(0, verb)), "s", std::string(holds.substr(verb)));
 }
 
-std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
+std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tallies& tallies) {
   const Tally& tally = tallies.of[cause];
   const bool line = tally.at != UINT32_MAX;
   const std::string place = line ? Place(file, tally.at) : "";
@@ -263,7 +271,8 @@ std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
     absl::StrAppend(&text, ", and whole objects keep their places, because ",
                     std::string(tallies.objects));
   }
-  return absl::StrCat(text, "; ", kWords[cause].frees);
+  const bool free = IsFree(policy) && kWords[cause].under_free != nullptr;
+  return absl::StrCat(text, "; ", free ? kWords[cause].under_free : kWords[cause].frees);
 }
 
 // What holds besides what can be counted by paths.
@@ -317,7 +326,7 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
                    [&all](Cause a, Cause b) { return all.of[a].paths > all.of[b].paths; });
   std::vector<std::string> lines;
   for (const Cause cause : causes) {
-    if (lines.size() < most) lines.push_back(gcode::TextOf(file, cause, all));
+    if (lines.size() < most) lines.push_back(gcode::TextOf(file, policy, cause, all));
   }
   if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy));
   return lines;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/files/process_memory.h"
 #include "client/files/utf8_mark.h"
@@ -142,10 +143,11 @@ VerifyOptions AllRules(const GcodeFile& file, const RewriteOptions& options) {
   return verify;
 }
 
-// What is not proven, and where: "islands rest as long as in the original, ... (part.gcode:118
-// ...)".
-std::string Reason(const VerifyBreak& found) {
-  return absl::StrCat(std::string(VerifyRuleText(found.rule)), " (", found.message, ")");
+// What is not proven, and where: "islands rest as long as in the original, ... (part.gcode:118)".
+std::string Reason(const GcodeFile& file, const VerifyBreak& found) {
+  const std::string text(VerifyRuleText(found.rule));
+  if (found.original_line == 0) return text;
+  return absl::StrFormat("%s (%s:%d)", text, file.name, found.original_line);
 }
 
 size_t LinesIn(std::string_view text) {
@@ -222,7 +224,7 @@ class Rewriter {
         chooser_.Tighten(round + 1 < kRoundsOfLayers ? more : done->before.crossings + 1);
         continue;
       }
-      if (unproven_.empty()) unproven_ = Reason(report.breaks.front());
+      if (unproven_.empty()) unproven_ = Reason(file_, report.breaks.front());
       RuleOut(report, lines, round);
     }
   }
@@ -384,32 +386,25 @@ std::string DescribeFast(const GcodeRewrite& rewrite) {
 
 std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
   std::vector<std::string> left;
-  if (rewrite.layers_unproven > 0) {
-    left.push_back(absl::StrFormat(
-        "%d layers left unchanged, because for no order found it could be proven that %s",
-        rewrite.layers_unproven, rewrite.unproven));
-  }
-  if (rewrite.layers_unclear > 0) {
-    left.push_back(
-        absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s",
-                        rewrite.layers_unclear, rewrite.unclear));
-  }
-  if (rewrite.layers_blocked > 0) {
-    left.push_back(absl::StrFormat(
-        "%d layers keep travel that could be shorter, because something finished that stands "
-        "higher is in the way of the head: %s",
-        rewrite.layers_blocked, rewrite.blocked));
-  }
-  if (rewrite.relative_moves > 0) {
-    left.push_back(absl::StrFormat(
-        "%d moves that print stay where they are, because they are relative (G91): %s",
-        rewrite.relative_moves, rewrite.relative));
-  }
-  if (rewrite.unread_moves > 0) {
-    left.push_back(absl::StrFormat(
-        "%d lines begin as moves do, but cannot be read, so that nothing passes them: %s",
-        rewrite.unread_moves, rewrite.unread));
-  }
+  const auto note = [&left](int64_t count, const char* one, const char* more,
+                            const std::string& why) {
+    if (count > 0) left.push_back(absl::StrCat(count, " ", count == 1 ? one : more, why));
+  };
+  note(rewrite.layers_unproven, "layer stays", "layers stay",
+       absl::StrCat(" as sliced, because for no faster order could it be proven that ",
+                    rewrite.unproven, "; neither a flag nor a setting of the slicer changes that"));
+  note(rewrite.layers_unclear, "layer stays", "layers stay",
+       absl::StrCat(" as sliced, because machines read a line differently: ", rewrite.unclear));
+  note(rewrite.layers_blocked, "layer keeps", "layers keep",
+       absl::StrCat(" travel that could be shorter, because something finished that stands higher "
+                    "is in the way of the head: ",
+                    rewrite.blocked, "; objects farther apart in the slicer leave it more room"));
+  note(rewrite.relative_moves, "move that prints stays", "moves that print stay",
+       absl::StrCat(" in place, being relative (G91): ", rewrite.relative,
+                    "; absolute coordinates (G90) in the slicer would let more move"));
+  note(rewrite.unread_moves, "line begins", "lines begin",
+       absl::StrCat(" as moves do, but cannot be read, and nothing passes such a line: ",
+                    rewrite.unread));
   left.insert(left.end(), rewrite.barriers.begin(), rewrite.barriers.end());
   return left;
 }

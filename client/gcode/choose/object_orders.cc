@@ -104,7 +104,9 @@ class RunFinder {
       const uint16_t link = file_.blocks[layer_.first_block + path].link;
       const bool heats = path > stretch.begin && (link & kLinkHeats) != 0;
       if (!freedom_.rules[path].pinned && !heats) continue;
-      Bar("commands that are not known, or paths that stay, stand between them");
+      Bar(heats ? "a temperature changes amid one of them"
+                : "paths of one of them stay as sliced, beside commands that are not known, "
+                  "a tower or a script");
       return false;
     }
     return true;

@@ -64,7 +64,7 @@ class Views(CommandLine):
         lines[place] = lines[place].replace("G1 ", "G1 (here) ")
         name = self.put("odd.gcode", "\n".join(lines) + "\n")
         said = self.succeed("optimize", name, "-o", self.path("out.gcode"), "--strategy=greedy")
-        self.assertIn("1 lines begin as moves do, but cannot be read, so that nothing passes them: "
+        self.assertIn("1 line begins as moves do, but cannot be read, and nothing passes such a line: "
                       f"{name}:{place + 1}\n", said)
 
     def test_what_is_allowed_beside_the_policy(self):

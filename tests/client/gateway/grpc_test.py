@@ -114,7 +114,7 @@ class Calls(OnGateway):
         place = [i for i, line in enumerate(lines) if line.startswith("G1 X")][10]
         lines[place] = lines[place].replace("G1 ", "G1 (here) ")
         left = self.rewrite("\n".join(lines).encode(), name="odd.gcode")[2].left
-        self.assertIn("1 lines begin as moves do, but cannot be read, so that nothing passes them: "
+        self.assertIn("1 line begins as moves do, but cannot be read, and nothing passes such a line: "
                       f"odd.gcode:{place + 1}.", left)
 
     def test_the_machine_and_the_container_are_those_of_the_command(self):

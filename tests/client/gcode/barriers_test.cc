@@ -60,6 +60,26 @@ TEST(DescribeBarriers, SpeakOfOnePathAndOfNoRest) {
               AllOf(Not(HasSubstr("rest 0 s")), HasSubstr("no other order found is faster")));
 }
 
+// It is pinned as spiral vases are.
+TEST(DescribeBarriers, CallAPurgeLineWhatItIs) {
+  const std::string purge =
+      "G1 Z.2 F3000\nG1 X0 Y50 F9000\nG1 X0 Y150 F1000 E15\nG1 X.7\nG1 X.7 Y50 E15\n";
+  std::string text = Lines("");
+  text.insert(text.find(";LAYER"), purge);
+
+  EXPECT_THAT(BarriersOf(text), AllOf(HasSubstr("script"), HasSubstr("purge line (first in part"),
+                                      Not(HasSubstr("scarf")), Not(HasSubstr("tower"))));
+}
+
+TEST(DescribeBarriers, AskForNoPolicyThatIsAskedFor) {
+  const std::string text = absl::StrReplaceAll(
+      Lines(""), {{"G1 X0 Y10 F9000\n;TYPE:Internal infill", "G1 X0 Y0 F9000\n;TYPE:Ironing"}});
+
+  EXPECT_THAT(BarriersOf(text), HasSubstr("with --policy=free"));
+  EXPECT_THAT(BarriersOf(text, Policy::kFree),
+              AllOf(HasSubstr("ironing"), Not(HasSubstr("--policy"))));
+}
+
 TEST(DescribeBarriers, NameTheFlag) {
   const std::string fans = Lines("M106 S90\n");
   EXPECT_THAT(BarriersOf(fans), HasSubstr("--allow=fan_order"));
@@ -78,6 +98,14 @@ TEST(DescribeBarriers, SayWhyObjectsStay) {
   print.order = {0, 2, 0, 3};
   EXPECT_THAT(BarriersOf(Text(print, testing::Notations()[1])),
               AllOf(HasSubstr("label of an object"), HasSubstr("printed twice")));
+  // Others change places where one does not.
+  print.order = {0, 1, 2, 3};
+  std::string text = Text(print, testing::Notations()[1]);
+  for (size_t at = 0; (at = text.find("NAME=p0\n", at + 1)) != std::string::npos;) {
+    if (text.compare(at - 6, 6, "START ") == 0) text.insert(at + 8, "G1 X1 Y1 F9000\nM400\n");
+  }
+  EXPECT_THAT(BarriersOf(text),
+              AllOf(HasSubstr("label of an object"), Not(HasSubstr("whole objects keep"))));
 }
 
 TEST(DescribeProgressFaults, SayWhatCannotBeTrue) {
