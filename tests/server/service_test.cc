@@ -145,7 +145,7 @@ v1::Layer ScatteredLayer(uint64_t id) {
 TEST(Service, LookingAheadDependsOnWhatWasSentAlone) {
   TestService service;
   v1::OptimizeBatchRequest request = MakeBatch(0, "auto");
-  for (uint64_t id = 1; id <= 16; ++id) *request.add_layers() = ScatteredLayer(id);
+  for (uint64_t id = 1; id <= 8; ++id) *request.add_layers() = ScatteredLayer(id);
   const Answer batch = service.Batch(request);
   ASSERT_TRUE(batch.status.ok()) << batch.status.error_message();
   const Answer blind = service.Stream(request);

@@ -107,7 +107,7 @@ TEST(NeverLonger, OnGridsWhereManyRoutesAreEquallyLong) {
   for (const Grid& grid :
        {Grid{3, 3, true}, Grid{3, 3, false, true}, Grid{4, 2, true, true}, Grid{7, 5}}) {
     for (const char* effort : {"0.05", "0.3"}) {
-      for (uint64_t seed = 21; seed <= 24; ++seed) {
+      for (uint64_t seed = 21; seed <= 22; ++seed) {
         SCOPED_TRACE(absl::StrCat(
             grid.columns, " x ", grid.rows, grid.hexagonal ? " hexagonal" : "",
             grid.rasters ? " with rasters" : "", ", effort ", effort, ", seed ", seed));

@@ -139,7 +139,7 @@ TEST(PathTspSolver, ProvesClustersFromSeveralStarts) {
 // A node whose programme is not solved stays open, and the others are done all the same.
 TEST(PathTspSolver, GoesOnAfterANodeThatFails) {
   int failed = 0;
-  for (const int items : {20, 24, 28}) {
+  for (const int items : {20, 24}) {
     SCOPED_TRACE(items);
     const SmallTsp instance = Clusters(items);
     const double given = TspCostOf(instance, FirstPorts(instance.tsp));
