@@ -34,12 +34,18 @@ bool ReplyQueue::Write(HttpBody piece, bool optional) {
   {
     MutexLock lock(mutex_);
     if (!Open()) return true;  // nobody misses it
-    const size_t bytes = TextBytes(piece);
-    const bool has_room = std::holds_alternative<std::string>(piece)
-                              ? text_bytes_ + bytes <= kMaxOptionalBytes
-                              : pieces_.empty();
+    std::string* const text = std::get_if<std::string>(&piece);
+    const bool has_room =
+        text != nullptr ? text_bytes_ + text->size() <= kMaxOptionalBytes : pieces_.empty();
     if (optional && !has_room) return false;
-    text_bytes_ += bytes;
+    text_bytes_ += TextBytes(piece);
+    // Lines that come faster than they are sent go together. The connection is up already.
+    std::string* const before =
+        pieces_.empty() ? nullptr : std::get_if<std::string>(&pieces_.back());
+    if (text != nullptr && before != nullptr) {
+      before->append(*text);
+      return true;
+    }
     pieces_.push_back(std::move(piece));
   }
   wake_();

@@ -32,7 +32,7 @@ class ReplyQueue : public HttpReply {
   std::optional<HttpResponse> TakeHead();
   bool streaming() const;
 
-  // The next piece of a stream.
+  // The next piece of a stream: all text up to a file.
   std::optional<HttpBody> TakePiece();
   bool ended() const;
 
