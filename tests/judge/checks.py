@@ -169,18 +169,44 @@ def is_thin(move, full):
 
 
 def ironing_of(side):
-    """The thin deposits most of whose length lies upon full ones of the same height."""
-    full, printed, found = flows(side), set(), set()
+    """The thin deposits most of whose length lies upon full ones of the same height, where they cover an area: the filling
+    of a narrow gap is thin, too."""
+    full, printed, found = flows(side), set(), []
     for move in side.deposits():
         z = round(move.z1, 3)
         cells = [(cell, z) for cell in cells_of(move, FINE_CELL_MM)]
         if z in full and is_thin(move, full):
             if sum(cell in printed for cell in cells) > 0.5 * len(cells):
-                found.add(identity(move))
+                found.append((move, cells))
         else:
             # A line is wider than a cell.
             printed.update(((x + i, y + j), z) for (x, y), z in cells for i in (-1, 0, 1) for j in (-1, 0, 1))
-    return found
+    return {identity(move) for region in regions(found) if covers_area(region) for move in region}
+
+
+def regions(passes):
+    """The moves of [(move, cells)] that lie side by side or end to end, as lists."""
+    by_cell = collections.defaultdict(list)
+    for i, (_, cells) in enumerate(passes):
+        for cell in cells:
+            by_cell[cell].append(i)
+    left = set(range(len(passes)))
+    while left:
+        stack, region = [left.pop()], []
+        while stack:
+            move, cells = passes[stack.pop()]
+            region.append(move)
+            beside = {i for (x, y), z in cells for dx in (-1, 0, 1) for dy in (-1, 0, 1)
+                      for i in by_cell.get(((x + dx, y + dy), z), ())} & left
+            left -= beside
+            stack += beside
+        yield region
+
+
+def covers_area(moves):
+    """True if they go to and fro over a place, or around it."""
+    xs, ys = [x for move in moves for x in (move.x0, move.x1)], [y for move in moves for y in (move.y0, move.y1)]
+    return sum(move.length for move in moves) > 2 * math.hypot(max(xs) - min(xs), max(ys) - min(ys))
 
 
 def identity(move):

@@ -99,6 +99,14 @@ class Checks(unittest.TestCase):
 
         self.assertIn("ironing", faults(before, after))
 
+    def test_the_filling_of_a_narrow_gap_is_no_ironing(self):
+        gap = ["G1 X12 Y10 F9000", "G1 F1200", "G1 X15 Y10 E0.004", "G1 X18 Y10.1 E0.004"]
+        before = HEAD + layer(0.2, block(10, 0.2), gap)
+        after = HEAD + layer(0.2, gap, block(10, 0.2))
+
+        self.assertEqual(checks.ironing_of(print_trace.trace("\n".join(before))), set())
+        self.assertNotIn("ironing", faults(before, after))
+
     def test_a_path_outside_its_object_is_found(self):
         def labelled(inside, outside):
             return HEAD + layer(0.2, ["M486 S0"], inside, ["M486 S-1"], outside)
