@@ -4,6 +4,7 @@ A fault is one line of text that names the place in the optimised file. Every ch
 what it did wrong itself is no fault of the copy.
 """
 
+import bisect
 import collections
 import math
 
@@ -354,14 +355,16 @@ def islands_of(moves, size):
 
 
 def rests(side, size):
-    """{(z, an island's least cell): seconds} between the end of what lies below an island and its begin."""
-    found, below = {}, {}
+    """{(z, an island's least cell): (seconds, whether anything is printed)} between the end of what lies below an island
+    and its begin."""
+    found, below, begins = {}, {}, [move.begin for move in side.deposits()]
     for z, moves in layers_of(side):
         now = {}
         for cells, begin, end in islands_of(moves, size):
             under = [below[cell] for cell in cells if cell in below]
             if under:
-                found[z, min(cells)] = begin - max(under)
+                deposits_between = bisect.bisect_left(begins, begin - 1e-6) - bisect.bisect_left(begins, max(under) - 1e-6)
+                found[z, min(cells)] = begin - max(under), deposits_between > 0
             for cell in cells:
                 now[cell] = end
         below = {**below, **now}
@@ -370,16 +373,17 @@ def rests(side, size):
 
 def rest(before, after, options):
     """No island rests shorter than it did or than the file's least layer time, under safe and balanced, however far apart
-    islands may be to count as one."""
+    islands may be to count as one. What the original prints twice running needs no rest."""
     if options.policy not in ("safe", "balanced"):
         return
     worst = None
     for size in ISLAND_CELLS_MM:
         old, new = rests(before, size), rests(after, size)
-        for place, seconds in new.items():
-            need = 0.95 * min(old.get(place, 0.0), options.least_layer_s) - REST_SLACK_S
+        for place, (seconds, _) in new.items():
+            rested, others_between = old.get(place, (0.0, False))
+            need = 0.95 * min(rested, options.least_layer_s) - REST_SLACK_S if others_between else 0.0
             if seconds < need and (worst is None or seconds - need < worst[0]):
-                worst = (seconds - need, place, seconds, old[place], size)
+                worst = (seconds - need, place, seconds, rested, size)
     if worst:
         yield (f"rest: at Z{worst[1][0]:g} an island rests {worst[2]:.1f} s, {worst[3]:.1f} s in the original; told apart by "
                f"cells of {worst[4]:g} mm")

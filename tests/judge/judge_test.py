@@ -65,6 +65,13 @@ class Checks(unittest.TestCase):
         self.assertIn("rest", faults(self.towers, after))
         self.assertEqual(faults(self.towers, after, "free"), set())
 
+    def test_an_island_that_is_printed_twice_running_needs_no_rest(self):
+        away = ["G1 X200 Y200 F1800"]  # of 8 s
+        before = HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, away, block(10, 0.4))
+        after = HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, block(10, 0.4))
+
+        self.assertEqual(faults(before, after), set())
+
     def test_the_least_layer_time_is_read_from_the_files_of_many_slicers(self):
         for line in ("; slow_down_layer_time = 3", "; slowdown_below_layer_time = 3", "; min_layer_time_sec : \t3",
                      ";   cool_min_layer_time,3"):
