@@ -33,10 +33,10 @@ def browser():
 
 
 def write_large_part(path):
-    """1,000 layers of 100 islands with 4 contours of 8 to 20 points and 6 rasters."""
+    """200 layers of 100 islands with 4 contours of 8 to 20 points and 6 rasters."""
     numbers = random.Random(1)
-    lines = ["nF,1000"]
-    for layer in range(1, 1001):
+    lines = ["nF,200"]
+    for layer in range(1, 201):
         lines.append(f"F{layer},100")
         for island in range(1, 101):
             lines.append(f"I{island},4,6")
