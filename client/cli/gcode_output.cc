@@ -44,21 +44,18 @@ absl::Status CheckKind(const InputFile& input, ContainerKind kind) {
 }  // namespace
 
 std::vector<Flag> ContainerFlagTable() {
-  std::vector<Flag> table = PlateFlagTable();
-  table.insert(table.begin(), {"container",
-                               "KIND",
-                               "text or bgcode (default: by OUTPUT, or as INPUT)",
-                               {"text", "bgcode"},
-                               false,
-                               "text or bgcode; only this plate"});
-  return table;
+  return OfTopic(kSlicedTopic, Joined({{"container",
+                                        "KIND",
+                                        "text or bgcode (default: by OUTPUT, or as INPUT)",
+                                        {"text", "bgcode"}}},
+                                      PlateFlagTable()));
 }
 
 std::vector<Flag> PlateFlagTable() {
-  return {
-      {"plate", "N", "only this plate of a .gcode.3mf (default: all)"},
-      {"ignore_md5", "", "accept plates whose MD5 is wrong"},
-  };
+  return OfTopic(kSlicedTopic, {
+                                   {"plate", "N", "only this plate of a .gcode.3mf (default: all)"},
+                                   {"ignore_md5", "", "accept plates whose MD5 is wrong"},
+                               });
 }
 
 absl::StatusOr<PlateOptions> ParsePlateOptions(const Flags& flags) {

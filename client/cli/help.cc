@@ -1,5 +1,8 @@
 #include "client/cli/help.h"
 
+#include <map>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
@@ -39,20 +42,18 @@ std::string GeneralHelp() {
 
 std::string FlagHelp(absl::Span<const Flag> flags) {
   constexpr int kWidth = 27;
-  std::string out;
-  std::string brief;
-  for (size_t i = 0; i < flags.size(); ++i) {
-    const Flag& flag = flags[i];
-    if (flag.brief) {
-      absl::StrAppendFormat(&brief, "%s--%s", brief.empty() ? "  " : " ", flag.name);
-      continue;
-    }
-    std::string usage = FlagUsage(flag);
-    if (!flag.joint_help.empty()) absl::StrAppend(&usage, " ", FlagUsage(flags[++i]));
-    absl::StrAppendFormat(&out, "  %-*s  %s\n", kWidth, usage,
-                          flag.joint_help.empty() ? flag.help : flag.joint_help);
+  std::vector<std::string> topics = {""};
+  std::map<std::string, std::string> lines = {{"", ""}};  // by topic
+  for (const Flag& flag : flags) {
+    if (!lines.contains(flag.topic)) topics.push_back(flag.topic);
+    absl::StrAppendFormat(&lines[flag.topic], "  %-*s  %s\n", kWidth, FlagUsage(flag), flag.help);
   }
-  return brief.empty() ? out : out + brief + "\n";
+  std::string out;
+  for (const std::string& topic : topics) {
+    if (!topic.empty()) absl::StrAppend(&out, "\n", topic, ":\n");
+    out += lines[topic];
+  }
+  return out;
 }
 
 std::string CommandHelp(const Command& command) {

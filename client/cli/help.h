@@ -16,7 +16,7 @@ std::string GeneralHelp();
 // What `traverse COMMAND --help` prints: usage, flags, an example.
 std::string CommandHelp(const Command& command);
 
-// A line for each flag, or for two that share their help.
+// A line for each flag, under the names of their topics.
 std::string FlagHelp(absl::Span<const Flag> flags);
 
 // "--seed=N", "-o OUTPUT", "--quiet".

@@ -93,8 +93,7 @@ const std::vector<cli::Flag>& LoadgenFlagTable() {
         {"seed", "N", "seed of sizes and arrivals (default 1)"},
         {"json", "FILE", "write the figures; - is standard output"},
     };
-    for (cli::Flag& flag : cli::ConnectionFlagTable()) rows.push_back(std::move(flag));
-    return rows;
+    return cli::Joined(std::move(rows), cli::OfTopic("Connection", cli::ConnectionFlagTable()));
   }();
   return table;
 }

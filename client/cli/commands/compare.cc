@@ -178,19 +178,13 @@ Command CompareCommand() {
   return {.name = "compare",
           .operands = {"INPUT"},
           .summary = "Compares strategies on one job.",
-          .flags = WithRunFlagTable(Joined(
-              {
-                  {"strategies",
-                   "NAME,...",
-                   "or NAME:OPTION=VALUE (default: all; exact for 5s)",
-                   {},
-                   false,
-                   "(default: all; exact for 5s); runs of each"},
+          .flags = Joined(
+              WithRunFlagTable({
+                  {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all; exact for 5s)"},
                   {"repeat", "N", "runs of each, one per seed; shows the means"},
-                  {"quiet", "", "no progress", {}, false, "no progress; the printer's limits"},
-                  MachineFlag(),
-              },
-              PlateFlagTable())),
+                  {"quiet", "", "no progress"},
+              }),
+              Joined(PlateFlagTable(), {MachineFlag()})),
           .example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt",
           .run = RunCompare};
 }

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cstdio>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -227,46 +225,29 @@ Outcome RunOptimize(const Flags& flags) {
   return Done();
 }
 
-// Shares a line of the help with a flag that has one for itself.
-std::vector<Flag> WithStartFrom(std::vector<Flag> table) {
-  const auto partner = std::find_if(table.begin(), table.end(), [](const Flag& flag) {
-    return flag.name == "max_hidden_travel";
-  });
-  partner->joint_help = "hidden moves, mm; earlier --json";
-  table.insert(std::next(partner),
-               {"start_from", "FILE", "begin with the routes that an earlier --json holds"});
-  return table;
+Flag RestateTimesFlag() {
+  return {.name = "restate_times",
+          .value = "",
+          .help = "renew print times in M73, headers and metadata",
+          .topic = kSlicedTopic};
 }
 
 }  // namespace
 
 Command OptimizeCommand() {
-  std::vector<Flag> own = Joined(
-      {
-          {"o",
-           "OUTPUT",
-           "G-code (default: INPUT; with --json none)",
-           {},
-           false,
-           "(default: INPUT; with --json none); no summary"},
-          {"quiet", "", "no progress, no summary"},
-          {"strategy",
-           "NAME",
-           "see `traverse strategies`; or NAME:OPTION=VALUE",
-           {},
-           false,
-           "see `traverse strategies`; printer's limits"},
-          MachineFlag(),
-      },
-      ContainerFlagTable());
-  own.back().joint_help = "accept a wrong MD5; renew stated print times";
-  own.push_back({"restate_times", "", "renew print times in M73, headers and metadata"});
-  return {.name = "optimize",
-          .operands = {"INPUT"},
-          .summary = "Shortens the travel of a job.",
-          .flags = WithStartFrom(WithRunFlagTable(std::move(own))),
-          .example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
-          .run = RunOptimize};
+  return {
+      .name = "optimize",
+      .operands = {"INPUT"},
+      .summary = "Shortens the travel of a job.",
+      .flags = Joined(WithRunFlagTable({
+                          {"o", "OUTPUT", "G-code (default: INPUT; with --json none)"},
+                          {"quiet", "", "no progress, no summary"},
+                          {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
+                          {"start_from", "FILE", "begin with the routes of an earlier --json"},
+                      }),
+                      Joined(ContainerFlagTable(), {MachineFlag(), RestateTimesFlag()})),
+      .example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
+      .run = RunOptimize};
 }
 
 }  // namespace traverse::cli

@@ -76,10 +76,9 @@ Command VerifyCommand() {
   return {.name = "verify",
           .operands = {"ORIGINAL", "OPTIMISED"},
           .summary = "Checks that two G-code files print exactly the same.",
-          .flags = Joined(VerifyFlagTable(),
-                          Joined({{"json", "FILE", "write the findings, rule by rule"},
-                                  {"quiet", "", "print nothing if they do"}},
-                                 PlateFlagTable())),
+          .flags = OfTopic("", Joined(Joined(VerifyFlagTable(), PlateFlagTable()),
+                                      {{"json", "FILE", "write the findings, rule by rule"},
+                                       {"quiet", "", "print nothing if they do"}})),
           .example = "traverse verify part.gcode part.optimised.gcode",
           .run = RunVerify};
 }

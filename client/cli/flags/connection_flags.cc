@@ -39,17 +39,15 @@ absl::StatusOr<std::string> ReadToken(const Flags& flags) {
 }  // namespace
 
 std::vector<Flag> ConnectionFlagTable() {
-  std::vector<Flag> table = {
+  return {
       {"tls", "", "encrypt; every other TLS flag implies it"},
-      {"tls_ca", "FILE", "authorities of the servers' certificates (default: the system's)"},
+      {"tls_ca", "FILE", "authorities of the servers (default: system's)"},
       {"tls_certificate", "FILE", "this client's certificate, for mutual TLS"},
       {"tls_key", "FILE", "private key of --tls_certificate"},
-      {"tls_name", "NAME", "name in the servers' certificates (default: the host)"},
-      {"token_file", "FILE", "bearer token (default: environment's TRAVERSE_TOKEN)"},
+      {"tls_name", "NAME", "name in their certificates (default: the host)"},
+      {"token_file", "FILE", "bearer token (default: $TRAVERSE_TOKEN)"},
       {"insecure", "", "send the token unencrypted to other machines"},
   };
-  for (Flag& flag : table) flag.brief = true;
-  return table;
 }
 
 absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,

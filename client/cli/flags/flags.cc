@@ -64,6 +64,11 @@ absl::Status CheckValue(const Flag& flag, const std::string& value) {
 
 }  // namespace
 
+std::vector<Flag> OfTopic(const std::string& topic, std::vector<Flag> table) {
+  for (Flag& flag : table) flag.topic = topic;
+  return table;
+}
+
 std::vector<Flag> Joined(std::vector<Flag> table, const std::vector<Flag>& more) {
   table.insert(table.end(), more.begin(), more.end());
   return table;

@@ -31,13 +31,14 @@ struct Flag {
   std::vector<std::string> choices = {};  // the allowed values; empty: any
   bool repeatable = false;
 
-  // If not empty, help shows this flag and the next one on one line, with this text for both.
-  std::string joint_help = "";
-
-  // True: help lists only this flag's name, beside similar ones; the man page describes it
-  // fully.
-  bool brief = false;
+  std::string topic = "";  // help lists the flags of a topic together, under its name
 };
+
+// The topic of what concerns sliced files alone.
+inline constexpr char kSlicedTopic[] = "Sliced G-code";
+
+// `table` with all its rows of one topic.
+std::vector<Flag> OfTopic(const std::string& topic, std::vector<Flag> table);
 
 // The rows of `table`, followed by those of `more`.
 std::vector<Flag> Joined(std::vector<Flag> table, const std::vector<Flag>& more);

@@ -93,88 +93,86 @@ absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
   return absl::InvalidArgumentError(absl::StrCat("--machine: ", limits.status().message()));
 }
 
-// Puts `flag` and the next flag on one line of the help.
-Flag Joint(Flag flag, const std::string& help) {
-  flag.joint_help = help;
-  return flag;
-}
-
 }  // namespace
 
 std::vector<Flag> JobFlagTable() {
-  const std::vector<std::string> any;
-  return {
-      {"option", "NAME=VALUE", "option of the strategy; repeatable", any, /*repeatable=*/true,
-       "strategy's option; what else may move"},
-      AllowFlag(),
-      {"layers", "A-B", "only these layers, counted from 1", any, false,
-       "only these layers; time an island rests, s"},
-      {"min_revisit", "S", "G-code: least time between layers of an island, s"},
-      MaxHiddenTravelFlag(),
-      {"deposition",
-       "ORDER",
-       "sequential (default) or interleaved",
-       {"sequential", "interleaved"},
-       false,
-       "sequential or interleaved; length or time"},
-      {"cost", "COST", "length, or time (default of G-code)", {"length", "time"}},
-      {"start", "X,Y", "where the head starts, mm (default 0,0)", any, false,
-       "head position, mm (0,0); random seed (1)"},
+  const std::vector<Flag> job = {
+      {"option", "NAME=VALUE", "option of the strategy; repeatable", {}, /*repeatable=*/true},
+      {"layers", "A-B", "only these layers, counted from 1"},
+      {"deposition", "ORDER", "sequential (default) or interleaved", {"sequential", "interleaved"}},
+      {"start", "X,Y", "where the head starts, mm (default 0,0)"},
       {"seed", "N", "seed of all random choices (default 1)"},
-      {"cleaning_every", "N", "layers between two nozzle cleanings", any, false,
-       "layers between cleanings; point, mm"},
+      {"cleaning_every", "N", "layers between two nozzle cleanings"},
       {"cleaning_point", "X,Y", "where to clean the nozzle, mm"},
-      {"travel_speed", "MM_S", "travel speed (default: the file's; for time 130, idle time 20.32)",
-       any, false, "(default: the file's, or 130, 1250)"},
-      {"travel_accel", "MM_S2", "travel acceleration (default: the file's, or 1250)"},
-      {"retraction_seconds", "S", "time of one retraction (default: the file's, or 0.1)", any,
-       false, "(the file's, or 0.1, 2)"},
-      {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
-      Joint(PolicyFlag(), "safe|balanced|free|fast; keep|fewer|any"),
-      CrossingsFlag(),
-      {"deadline", "TIME", "time for the whole job, such as 500ms, 30s or 5m", any, false,
-       "for all; for a layer (500ms, 30s, 5m)"},
+      {"deadline", "TIME", "time for the whole job: 500ms, 30s, 5m"},
       {"layer_time_limit", "TIME", "time for each layer"},
   };
+  const std::vector<Flag> cost = {
+      {"cost", "COST", "length, or time (default of G-code)", {"length", "time"}},
+      {"travel_speed", "MM_S", "travel speed (default: the file's, or 130)"},
+      {"travel_accel", "MM_S2", "travel acceleration (the file's, or 1250)"},
+      {"retraction_seconds", "S", "time of one retraction (the file's, or 0.1)"},
+      {"retraction_threshold", "MM", "longer moves retract (the file's, or 2)"},
+  };
+  const std::vector<Flag> freedom = {
+      PolicyFlag(),
+      CrossingsFlag(),
+      AllowFlag(),
+      MaxHiddenTravelFlag(),
+      {.name = "min_revisit",
+       .value = "S",
+       .help = "least time between layers of an island, s",
+       .topic = kSlicedTopic},
+  };
+  return Joined(freedom, Joined(OfTopic("Job", job), OfTopic("What a move costs", cost)));
 }
 
 std::vector<Flag> ServiceFlagTable() {
-  std::vector<Flag> table = {
-      {"server",
-       "HOST:PORT,...",
-       "servers to call (default: embedded)",
-       {},
-       false,
-       "(default: embedded, all cores)"},
-      {"threads", "N", "threads of the embedded service (default: all cores)"},
-  };
-  for (Flag& flag : ConnectionFlagTable()) table.push_back(std::move(flag));
-  return table;
+  return OfTopic("Service",
+                 Joined(
+                     {
+                         {"server", "HOST:PORT,...", "servers to call (default: embedded)"},
+                         {"threads", "N", "of the embedded service (default: all cores)"},
+                     },
+                     ConnectionFlagTable()));
 }
 
 Flag PolicyFlag() {
-  return {"policy",
-          "POLICY",
-          "G-code: safe (default), balanced, free or fast",
-          {"safe", "balanced", "free", "fast"}};
+  return {.name = "policy",
+          .value = "POLICY",
+          .help = "safe (default), balanced, free or fast",
+          .choices = {"safe", "balanced", "free", "fast"},
+          .topic = kSlicedTopic};
 }
 
 Flag CrossingsFlag() {
-  return {"crossings",
-          "CROSSINGS",
-          "G-code: keep (default), fewer or any crossings",
-          {"keep", "fewer", "any"}};
+  return {.name = "crossings",
+          .value = "CROSSINGS",
+          .help = "visible walls crossed: keep (default), fewer, any",
+          .choices = {"keep", "fewer", "any"},
+          .topic = kSlicedTopic};
 }
 
 Flag AllowFlag() {
-  return {"allow", "NAME,...", "infill|wall|fan_order, wipes, inner_detours, ..."};
+  return {.name = "allow",
+          .value = "NAME,...",
+          .help = "infill_order, wall_order, fan_order, wipes, ...",
+          .topic = kSlicedTopic};
 }
 
 Flag MaxHiddenTravelFlag() {
-  return {"max_hidden_travel", "MM", "G-code: longest hidden move, mm (default 30)"};
+  return {.name = "max_hidden_travel",
+          .value = "MM",
+          .help = "longest hidden move, mm (default 30)",
+          .topic = kSlicedTopic};
 }
 
-Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }
+Flag MachineFlag() {
+  return {.name = "machine",
+          .value = "FILE",
+          .help = "printer's limits: klipper.cfg, or M201 to M205",
+          .topic = kSlicedTopic};
+}
 
 absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   GcodeOptions options;

@@ -5,13 +5,7 @@
 namespace traverse::cli {
 
 std::vector<Flag> WithRunFlagTable(std::vector<Flag> own) {
-  own.push_back({"json",
-                 "FILE",
-                 "write the routes; - is standard output",
-                 {},
-                 false,
-                 "routes; a page that shows the layers"});
-  own.push_back({"report", "FILE.html", "write a page that shows the layers"});
+  own.push_back({"json", "FILE", "write the routes; - is standard output"});
   return Joined(Joined(Joined(std::move(own), ViewFlagTable()), JobFlagTable()),
                 ServiceFlagTable());
 }

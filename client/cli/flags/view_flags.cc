@@ -30,13 +30,9 @@ absl::Status CheckFolder(const std::string& flag, const std::string& name) {
 
 std::vector<Flag> ViewFlagTable() {
   return {
-      {"picture",
-       "FILE.svg|png",
-       "draw a layer before and after",
-       {},
-       false,
-       "draws one layer (default: most saved)"},
-      {"layer", "N", "layer to draw, counted from 1 (default: most saved)"},
+      {"report", "FILE.html", "write a page that shows the layers"},
+      {"picture", "FILE.svg|png", "draw a layer before and after"},
+      {"layer", "N", "layer to draw (default: most saved)"},
   };
 }
 
