@@ -247,7 +247,8 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   assert(job.gcode != nullptr);
   SearchOptions search = options;
   const absl::Time due = absl::Now() + options.deadline;
-  search.finish_by = options.finish_by - WritingTime(job.gcode->text.size());
+  search.finish_by = options.finish_by - WritingTime(job.gcode->text.size(), options.reading,
+                                                     options.finish_by - absl::Now());
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
@@ -290,10 +291,12 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   return made;
 }
 
-absl::Duration WritingTime(size_t bytes) {
+absl::Duration WritingTime(size_t bytes, absl::Duration reading, absl::Duration left) {
   constexpr absl::Duration kLeast = absl::Milliseconds(100);
   constexpr double kSecondsPerByte = 0.25e-6;
-  return kLeast + absl::Seconds(kSecondsPerByte * static_cast<double>(bytes));
+  constexpr double kReadings = 4;  // files of many small layers take up to ten
+  const absl::Duration idle = kLeast + absl::Seconds(kSecondsPerByte * static_cast<double>(bytes));
+  return std::max(idle, std::min(kReadings * reading, left / 2));
 }
 
 }  // namespace traverse

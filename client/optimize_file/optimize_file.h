@@ -82,6 +82,9 @@ struct SearchOptions {
   // file can still be written and verified with the best results so far.
   absl::Time finish_by = absl::InfiniteFuture();
 
+  // How long reading the file took, on this machine and as busy as it is.
+  absl::Duration reading = absl::ZeroDuration();
+
   // When stop is requested, the call ends soon with Cancelled.
   std::stop_token cancel = {};
 
@@ -120,9 +123,10 @@ struct OptimizedFile {
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
                                        const OptimizeFileOptions& options);
 
-// How long writing and verifying a text of `bytes` bytes may take. Searches end this much before
-// `finish_by`.
-absl::Duration WritingTime(size_t bytes);
+// How long writing and verifying a text of `bytes` bytes may take, where `left` is left for the
+// search and for that: some times as long as reading it took, at most half of `left`, and no less
+// than on an idle machine. Searches end this much before `finish_by`.
+absl::Duration WritingTime(size_t bytes, absl::Duration reading, absl::Duration left);
 
 }  // namespace traverse
 

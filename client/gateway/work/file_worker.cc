@@ -193,8 +193,10 @@ struct FileWorker::Work {
 absl::Status FileWorker::RewritePart(Work& work, size_t index) {
   const FileRequest& request = work.request;
   work.teller.Stage(v1::RewriteProgress::STAGE_READING);
+  const absl::Time began = absl::Now();
   absl::StatusOr<InputJob> job = ReadJob(work.input, index, work.options.gcode);
   if (!job.ok()) return job.status();
+  work.options.reading = absl::Now() - began;
   if (request.only_new && HasOurLine(job->gcode->text)) {
     ++work.ours;
     return absl::OkStatus();

@@ -146,6 +146,15 @@ TEST_F(OptimizeFileTest, RetractsNoMoreThanTheFileWhereThatCostsLittle) {
   EXPECT_LT(file->rewrite.after.seconds, file->rewrite.before.seconds - 5);
 }
 
+TEST(WritingTime, IsLongerWhereReadingWasSlow) {
+  const absl::Duration idle = WritingTime(1'000'000, absl::ZeroDuration(), absl::Minutes(1));
+  EXPECT_EQ(idle, absl::Milliseconds(350));
+  EXPECT_EQ(WritingTime(1'000'000, absl::Milliseconds(50), absl::Minutes(1)), idle);
+  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::Minutes(1)), absl::Seconds(8));
+  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::Seconds(6)), absl::Seconds(3));
+  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::InfiniteDuration()), absl::Seconds(8));
+}
+
 // Each prime that is a little short is part of the print, as one that pushes more is.
 TEST_F(OptimizeFileTest, RetractsAsOftenWherePrimesAreShort) {
   absl::StatusOr<std::string> text =
