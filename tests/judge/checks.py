@@ -216,13 +216,13 @@ def identity(move):
 
 def spoiled(side, ironing):
     """{(cell, z): line} of full deposits where ironing of the same height has passed before."""
-    smooth, hits = set(), {}
+    smooth, hits, full = set(), {}, flows(side)
     for move in side.deposits():
         z = round(move.z1, 3)
         cells = [(cell, z) for cell in cells_of(move, FINE_CELL_MM)]
         if identity(move) in ironing:
             smooth.update(cells)
-        else:
+        elif z not in full or not is_thin(move, full):  # ironing's lines at an edge lie upon little
             hits.update({cell: move.line for cell in cells if cell in smooth and cell not in hits})
     return hits
 

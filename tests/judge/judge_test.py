@@ -106,6 +106,13 @@ class Checks(unittest.TestCase):
 
         self.assertIn("ironing", faults(before, after))
 
+    def test_ironing_beside_the_skin_spoils_none(self):
+        edge = ["G1 X12 Y10.19 F9000", "G1 F1200", "G1 X18 Y9.3 E0.012"]
+        skin, ironing = block(10, 0.2), block(10, 0.2, e=0.02)
+        before = HEAD + layer(0.2, skin, edge, ironing)
+
+        self.assertEqual(faults(before, HEAD + layer(0.2, skin, ironing, edge)), set())
+
     def test_the_filling_of_a_narrow_gap_is_no_ironing(self):
         gap = ["G1 X12 Y10 F9000", "G1 F1200", "G1 X15 Y10 E0.004", "G1 X18 Y10.1 E0.004"]
         before = HEAD + layer(0.2, block(10, 0.2), gap)
