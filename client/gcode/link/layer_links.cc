@@ -25,7 +25,6 @@ LayerLinks::LayerLinks(const GcodeFile& file, const Layer& layer, const Retracti
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),
       departures_(file, layer, donors, outlines_, walls_),
-      joints_(file, layer, outlines_),
       spares_walls_(habit.retracts && habit.spares_walls),
       drops_wipes_(habit.drops_wipes),
       hides_(hides && habit.hidden != nullptr),

@@ -17,7 +17,6 @@
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/model/visible_walls.h"
 #include "client/gcode/plan/head_room.h"
-#include "client/gcode/plan/joints.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 
@@ -77,7 +76,8 @@ class LayerLinks {
   // The travel of a hidden move.
   PlannedTravel OpenTravel(const Placement& from, const Placement& to) const;
 
-  // What the link takes as it is composed, with what printing loses at both of its ends.
+  // What the link takes as it is composed (LinkSeconds), and what `to` takes longer alone than as
+  // it is in the file.
   double SecondsOf(const Placement& from, const Placement& to, const LinkForm& form,
                    LinkParts& parts) const;
 
@@ -95,7 +95,6 @@ class LayerLinks {
   const VisibleWalls walls_;
   const TravelRules rules_;
   const LayerDepartures departures_;
-  const LayerJoints joints_;
   const bool spares_walls_;
   const bool drops_wipes_;
   const bool hides_;

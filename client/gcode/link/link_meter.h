@@ -5,36 +5,18 @@
 #define TRAVERSE_CLIENT_GCODE_LINK_LINK_METER_H_
 
 #include "client/gcode/link/new_link.h"
+#include "client/gcode/link/path_ends.h"
 #include "client/gcode/measure/print_meter.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/part_start.h"
-#include "client/gcode/plan/joints.h"
 
 namespace traverse::gcode {
 
-// Of one link.
-class LinkMeter {
- public:
-  // `file` outlives the meter. The machine is at `start` behind the path that ends with `joint`.
-  LinkMeter(const GcodeFile& file, const PartStart& start, const Joint& joint);
-
-  void Follow(const NewLink& link);
-
-  // The seconds of the links, with what printing loses by them before and behind; the next path
-  // begins with `joint`.
-  double Finish(const Joint& joint);
-
- private:
-  void FollowPart(const FilePart& part);
-  void FollowLine(const LinkLine& line);
-  void Set(const PrintState& state, SlotMask slots);
-  void Print(const Joint& joint);
-
-  const GcodeFile& file_;
-  PartStart at_;
-  PrintMeter meter_;
-  double printing_seconds_ = 0;
-};
+// The seconds of `link` between two paths: what these take with it, less what they take each alone,
+// from standstill to standstill. Below 0 if the link is shorter than what they would lose by stops.
+// The machine is at `at` behind `from`.
+double LinkSeconds(const GcodeFile& file, const PathEnds& from, const MachineState& at,
+                   const NewLink& link, const PathEnds& to);
 
 }  // namespace traverse::gcode
 

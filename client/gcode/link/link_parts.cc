@@ -7,6 +7,7 @@ void LinkParts::MakeRoom(size_t more) {
   if (kept_ <= kMostKept) return;
   links_.clear();
   paths_.clear();
+  ends_.clear();
   kept_ = more;
 }
 
@@ -19,12 +20,21 @@ std::shared_ptr<const Link> LinkParts::LinkTo(uint32_t block) {
 }
 
 std::shared_ptr<const PlacedPath> LinkParts::PathOf(const Placement& placement) {
-  const std::pair key(placement.block, placement.entry);
+  const Key key(placement.block, placement.entry);
   const auto found = paths_.find(key);
   if (found != paths_.end()) return found->second;
   auto path = std::make_shared<const PlacedPath>(file_, placement);
   MakeRoom(path->body().segments.size() + 1);
   return paths_.emplace(key, std::move(path)).first->second;
+}
+
+std::shared_ptr<const PathEnds> LinkParts::EndsOf(const Placement& placement) {
+  const Key key(placement.block, placement.entry);
+  const auto found = ends_.find(key);
+  if (found != ends_.end()) return found->second;
+  auto ends = std::make_shared<const PathEnds>(file_, *PathOf(placement));
+  MakeRoom(ends->first().moves.size() + ends->last().moves.size() + 1);
+  return ends_.emplace(key, std::move(ends)).first->second;
 }
 
 }  // namespace traverse::gcode

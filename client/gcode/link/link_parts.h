@@ -11,12 +11,13 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/link/link.h"
+#include "client/gcode/link/path_ends.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/placed_path.h"
 
 namespace traverse::gcode {
 
-// Keeps a few MB of what it was asked for last. Not thread-safe.
+// Keeps up to some 8 MB of what it was asked for last. Not thread-safe.
 class LinkParts {
  public:
   // `file` outlives the parts.
@@ -28,16 +29,20 @@ class LinkParts {
   std::shared_ptr<const Link> LinkTo(uint32_t block);
 
   std::shared_ptr<const PlacedPath> PathOf(const Placement& placement);
+  std::shared_ptr<const PathEnds> EndsOf(const Placement& placement);
 
  private:
   // Segments of paths and steps of links, of some 150 bytes each.
-  static constexpr size_t kMostKept = 20'000;
+  static constexpr size_t kMostKept = 50'000;
+
+  using Key = std::pair<uint32_t, uint32_t>;
 
   void MakeRoom(size_t more);
 
   const GcodeFile& file_;
   absl::flat_hash_map<uint32_t, std::shared_ptr<const Link>> links_;
-  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const PlacedPath>> paths_;
+  absl::flat_hash_map<Key, std::shared_ptr<const PlacedPath>> paths_;
+  absl::flat_hash_map<Key, std::shared_ptr<const PathEnds>> ends_;
   size_t kept_ = 0;
 };
 

@@ -34,7 +34,6 @@ TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, con
     if (form.departure != nullptr) across_mm -= form.departure->mm;
   }
   totals.mm = travel.mm;
-  totals.seconds += joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
   totals.retractions = form.retracts ? 1 : 0;
   totals.crossings = travel.crosses ? 1 : 0;
   totals.open = travel.crosses && !form.retracts ? 1 : 0;
@@ -58,11 +57,13 @@ double LayerLinks::SecondsOf(const Placement& from, const Placement& to, const L
                              LinkParts& parts) const {
   const std::shared_ptr<const PlacedPath> left = parts.PathOf(from);
   const std::shared_ptr<const PlacedPath> next = parts.PathOf(to);
-  PartStart start = StartBehind(file_, left->block());
-  start.machine.at = left->last();
-  LinkMeter meter(file_, start, joints_.EndOf(from.block - layer_.first_block, from.entry));
-  meter.Follow(LinkComposer(parts, donors_, *left, *next, form, start.machine).Compose());
-  return meter.Finish(joints_.BeginOf(to.block - layer_.first_block, to.entry));
+  MachineState at = StartBehind(file_, left->block()).machine;
+  at.at = left->last();
+  const NewLink link = LinkComposer(parts, donors_, *left, *next, form, at).Compose();
+  const std::shared_ptr<const PathEnds> ends = parts.EndsOf(to);
+  const double seconds = LinkSeconds(file_, *parts.EndsOf(from), at, link, *ends);
+  if (to.as_given()) return seconds;
+  return seconds + ends->seconds() - parts.EndsOf({to.block, 0, to.closed})->seconds();
 }
 
 double LayerLinks::LeastLiftMm() const {

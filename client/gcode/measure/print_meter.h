@@ -29,11 +29,6 @@ class PrintMeter {
   // From now on `dynamics` are in force.
   void Set(const Dynamics& dynamics) { dynamics_ = dynamics; }
 
-  // Queues a straight move that prints, by (dx, dy) mm.
-  void Print(double dx, double dy, double speed_mm_s, double accel_mm_s2) {
-    planner_.Move(dx, dy, speed_mm_s, accel_mm_s2, dynamics_.corner_speed());
-  }
-
   // Comes to a standstill.
   void Stop() { planner_.Stop(); }
 
