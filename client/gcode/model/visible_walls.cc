@@ -68,25 +68,51 @@ VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines, const std::vect
 bool VisibleWalls::Touched(absl::Span<const Vertex> travel) const {
   // Arcs are chords here, and coordinates are rounded.
   constexpr double kNearerMm = 0.02;
-  const auto at = [&](size_t i) { return Point{travel[i].x, travel[i].y}; };
-  const size_t last = travel.size() - 1;
-  const Point begin = grid_.WithoutEnds(at(0), at(1)).first;
-  const Point end = grid_.WithoutEnds(at(last - 1), at(last)).second;
+  std::vector<Point> line;
+  for (const Vertex& point : travel) line.push_back({point.x, point.y});
+  const size_t last = line.size() - 1;
+  const Point begin = grid_.WithoutEnds(line[0], line[1]).first;
+  line[last] = grid_.WithoutEnds(line[last - 1], line[last]).second;
+  line[0] = begin;
+  const std::vector<Point> back(line.rbegin(), line.rend());
   bool touches = false;
   for (size_t i = 1; i <= last && !touches; ++i) {
-    const Point from = i == 1 ? begin : at(i - 1);
-    const Point to = i == last ? end : at(i);
     const auto visit = [&](uint32_t s) {
       const WallSegment& wall = grid_.segments()[s];
       const double half = half_mm_[wall.wall];
-      const double mm = std::sqrt(SquaredDistance(SegmentOf(from, to), SegmentOf(wall.a, wall.b)));
-      touches = mm < half && mm + kNearerMm < DistanceMm(wall.wall, begin, half) &&
-                mm + kNearerMm < DistanceMm(wall.wall, end, half);
+      const double mm =
+          std::sqrt(SquaredDistance(SegmentOf(line[i - 1], line[i]), SegmentOf(wall.a, wall.b)));
+      if (mm >= half) return true;
+      const auto nearer_than_first = [&](const std::vector<Point>& from, size_t leg) {
+        return mm + kNearerMm < DistanceMm(wall.wall, from[0], half) ||
+               (mm + kNearerMm < half && ComesBack(from, leg, wall, half));
+      };
+      touches = nearer_than_first(line, i) && nearer_than_first(back, last + 1 - i);
       return !touches;
     };
-    grid_.ForEachOnLine(from, to, visit, widest_half_mm_);
+    grid_.ForEachOnLine(line[i - 1], line[i], visit, widest_half_mm_);
   }
   return touches;
+}
+
+bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const WallSegment& to,
+                             double half_mm) const {
+  constexpr double kStepMm = 0.25;
+  const double away_mm = half_mm + 0.1;
+  const Segment piece = SegmentOf(to.a, to.b);
+  for (size_t i = 1; i <= leg; ++i) {
+    const Point from = line[i - 1];
+    const double dx = line[i].x - from.x;
+    const double dy = line[i].y - from.y;
+    const double steps = std::ceil(std::hypot(dx, dy) / kStepMm);
+    for (double step = 0; step <= steps; ++step) {
+      const double share = steps > 0 ? step / steps : 0;
+      const Point at{from.x + dx * share, from.y + dy * share};
+      if (i == leg && SquaredDistance(SegmentOf(at, at), piece) < away_mm * away_mm) return false;
+      if (DistanceMm(to.wall, at, away_mm) >= away_mm) return true;
+    }
+  }
+  return false;
 }
 
 double VisibleWalls::DistanceMm(uint32_t wall, Point point, double most_mm) const {

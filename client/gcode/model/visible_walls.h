@@ -40,8 +40,9 @@ class VisibleWalls {
   bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
 
   // True if a move by these points, without its ends, comes nearer to one than half its width, and
-  // nearer than both ends: as slicers' own unretracted travel does not. So a move along a wall,
-  // from line to line beside it, does not touch it. REQUIRES: two points at the least.
+  // nearer than both ends, or again after it was away from that of an end: as slicers' own
+  // unretracted travel does not. So a move along a wall, from line to line beside it, does not
+  // touch it. REQUIRES: two points at the least.
   bool Touched(absl::Span<const Vertex> travel) const;
 
   // Crossed for a move with bends, near which it is tested too.
@@ -60,6 +61,11 @@ class VisibleWalls {
 
   // From `point` to a segment of `wall`; `most_mm` if none is nearer.
   double DistanceMm(uint32_t wall, Point point, double most_mm) const;
+
+  // True if a move by `line`, which on leg `leg`, from 1, is beside `to`, was away from its wall
+  // before.
+  bool ComesBack(const std::vector<Point>& line, size_t leg, const WallSegment& to,
+                 double half_mm) const;
 
   WallGrid grid_;
   std::vector<double> half_mm_;  // [wall of grid_]: half the width of its line

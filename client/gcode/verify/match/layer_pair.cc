@@ -326,14 +326,19 @@ bool LayerPair::TouchesOuterWall(const Travel& travel) const {
   constexpr double kNearerMm = 0.05;
   constexpr double kFarMm = kTouchMm + kNearerMm;
   bool touches = false;
-  for (const auto& [a, b] : travel.moves) {
+  for (size_t m = 0; m < travel.moves.size(); ++m) {
+    const auto& [a, b] = travel.moves[m];
     const double length = DistanceOf(a, b);
-    const auto visit = [&, a = a, b = b](uint32_t p) {
+    const auto visit = [&, a = a, b = b, m](uint32_t p) {
       const Piece& wall = outer_walls_.pieces()[p];
       const double mm = DistanceOfPieces(a, b, wall.a, wall.b);
-      touches = mm < kTouchMm &&
-                mm + kNearerMm < ToOuterWall(wall.path, travel.moves.front().first, kFarMm) &&
-                mm + kNearerMm < ToOuterWall(wall.path, travel.moves.back().second, kFarMm);
+      if (mm >= kTouchMm) return true;
+      const auto away_from = [&](Point end, bool behind) {
+        return mm + kNearerMm < ToOuterWall(wall.path, end, kFarMm) ||
+               WasAway(travel, m, behind, p);
+      };
+      touches = away_from(travel.moves.front().first, false) &&
+                away_from(travel.moves.back().second, true);
       return !touches;
     };
     // Between these lines there is no room for a cell of the grid.
@@ -344,6 +349,25 @@ bool LayerPair::TouchesOuterWall(const Travel& travel) const {
     }
   }
   return touches;
+}
+
+bool LayerPair::WasAway(const Travel& travel, size_t move, bool behind, uint32_t piece) const {
+  constexpr double kAwayMm = 0.5;
+  constexpr double kStepMm = 0.2;
+  const Piece& wall = outer_walls_.pieces()[piece];
+  for (size_t i = behind ? travel.moves.size() - 1 : 0;; behind ? --i : ++i) {
+    Point a = travel.moves[i].first;
+    Point b = travel.moves[i].second;
+    if (behind) std::swap(a, b);
+    const double steps = std::ceil(DistanceOf(a, b) / kStepMm);
+    for (double step = 0; step <= steps; ++step) {
+      const double t = steps > 0 ? step / steps : 0;
+      const Point at{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
+      if (i == move && DistanceToPiece(at, wall.a, wall.b) < kAwayMm) return false;
+      if (ToOuterWall(wall.path, at, kAwayMm) >= kAwayMm) return true;
+    }
+    if (i == move) return false;
+  }
 }
 
 double LayerPair::ToOuterWall(uint32_t path, Point point, double most) const {

@@ -55,6 +55,23 @@ TEST(VisibleWalls, AreOuterWallsAndNotTouchedByTravelsThatEndOnThem) {
   EXPECT_FALSE(walls.Crossed({15, 5}, {10.1, 5}));
 }
 
+// A wall with two bays above a floor; the travel leaves the floor and goes past the tip between.
+TEST(VisibleWalls, AreTouchedByTravelThatComesBackToItsOwn) {
+  const auto touches = [](double tip, std::vector<Vertex> travel) {
+    Outline bays = Wall({{0, 0}, {20, 0}, {20, 9}, {11, 9}, {10, tip}, {9, 9}, {0, 9}, {0, 0}});
+    bays.width_mm = 0.4;
+    return VisibleWalls({bays}).Touched(travel);
+  };
+
+  EXPECT_TRUE(touches(2.15, {{4, 0}, {16, 4}})) << "from the wall, past its tip";
+  EXPECT_TRUE(touches(2.15, {{16, 4}, {4, 0}})) << "and to it";
+  EXPECT_TRUE(touches(2.15, {{4, 0}, {16, 4}, {16, 5}}));
+  EXPECT_TRUE(touches(2.15, {{4, 0.9}, {16, 3.1}})) << "that of no end";
+  EXPECT_FALSE(touches(3, {{4, 0}, {16, 4}}));
+  EXPECT_FALSE(touches(2.15, {{10, 2.15}, {16, 4}})) << "leaves the tip";
+  EXPECT_FALSE(touches(2.15, {{0, 0}, {12, .15}, {16, 3}})) << "along the floor, and away";
+}
+
 // The shortest travel moves pass corners by less than coordinates tell.
 TEST(Detours, CrossNoWallAsTheyAreWritten) {
   const VisibleWalls walls(

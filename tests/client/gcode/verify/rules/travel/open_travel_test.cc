@@ -67,6 +67,23 @@ TEST(VerifyOpenTravels, NoRetractionIsLostOverAnOuterWallThatIsNotCrossed) {
   EXPECT_EQ(broken("X10 Y12", "X5 Y18"), "");
 }
 
+// The travel leaves the floor of two bays, and comes back to the tip between them.
+TEST(VerifyOpenTravels, NoRetractionIsLostOverAnotherPartOfTheWallThatItLeaves) {
+  const auto broken = [](const std::string& tip) {
+    const std::string bays =
+        Travel("X0 Y0") + kWall + "G1 X20 Y0 E1\nG1 X20 Y9 E1\nG1 X11 Y9 E1\nG1 " + tip +
+        " E1\nG1 X9 Y9 E1\nG1 X0 Y9 E1\nG1 X0 Y0 E1\n" + Line("Internal infill", "X1 Y0", "X4 Y0");
+    const std::string far =
+        Line("Internal infill", "X0 Y40", "X5 Y40") + "G1 X5 Y55 F9000\nG1 F1800\nG1 X6 Y55 E.3\n";
+    const std::string other = Line("Internal infill", "X16 Y4", "X16 Y5");
+    const std::string open = With(other, Travel("X16 Y4"), "G1 X16 Y4 F9000\n");
+    return Broken(kHead + bays + far + other, kHead + bays + open + far);
+  };
+
+  EXPECT_EQ(broken("X10 Y2.07"), "open_travel");
+  EXPECT_EQ(broken("X10 Y3"), "");
+}
+
 TEST(VerifyOpenTravels, AcrossWallsGetNoLonger) {
   const std::string to_and_fro = With(kAcross, Travel("X30 Y15"), "G1 X30 Y15 F9000\n");
   const std::string longer =
