@@ -122,27 +122,27 @@ def filament(before, after, options):
 # ----------------------------------------------------------------------------------------------------------- obstacles
 
 
-def collisions(side):
-    """{cell: [(depth, line)]}: where moves without deposits lead below what is printed already."""
+def collisions(side, printing=False):
+    """{cell: [(depth, line)]}: where moves without deposits, or with `printing` any, lead below what is printed already."""
     top, hits = {}, collections.defaultdict(list)
     for move in side.moves:
-        if move.deposits:
-            z = max(move.z0, move.z1)
-            for cell in cells_of(move, CELL_MM):
-                if top.get(cell, -1.0) < z:
-                    top[cell] = z
-        elif move.length:
+        if move.length and (printing or not move.deposits):
             z = min(move.z0, move.z1)
             for cell in cells_of(move, CELL_MM):
                 depth = top.get(cell, z) - z
                 if depth > 0.05:
                     hits[cell].append((depth, move.line))
+        if move.deposits:
+            z = max(move.z0, move.z1)
+            for cell in cells_of(move, CELL_MM):
+                if top.get(cell, -1.0) < z:
+                    top[cell] = z
     return hits
 
 
 def obstacles(before, after, options):
-    """No travel leads through what stands, but where the original's does."""
-    old, new = collisions(before), collisions(after)
+    """No travel leads through what stands, but where the original's head is as low."""
+    old, new = collisions(before, printing=True), collisions(after)
     deeper = []
     for (x, y), passes in new.items():
         near = [depth for i in (-1, 0, 1) for j in (-1, 0, 1) for depth, _ in old.get((x + i, y + j), ())]

@@ -85,6 +85,14 @@ class Checks(unittest.TestCase):
 
         self.assertIn("rest", faults(before, again))
 
+    def test_travel_is_as_low_as_the_original_prints(self):
+        high = HEAD + layer(0.4, block(10, 0.4))
+        low = layer(0.2, block(10, 0.2))
+        beside = [line for line in low if not line.endswith("E0.3")] + ["G1 X15 Y10", "G1 X15 Y9"]
+
+        self.assertEqual(list(checks.obstacles(*(print_trace.trace("\n".join(high + lines)) for lines in (low, low + beside)),
+                                               None)), [])
+
     def test_travel_through_a_tower_is_found(self):
         tower = HEAD + [line for n in range(1, 20) for line in layer(n * 0.2, block(20, n * 0.2))]
         around = tower + ["G1 Z10", "G1 X0 Y0"] + layer(0.2, block(0, 0.2), ["G1 X15 Y40 F9000"], block(40, 0.2))
