@@ -123,7 +123,7 @@ def filament(before, after, options):
 
 
 def collisions(side, printing=False):
-    """{cell: [(depth, line)]}: where moves without deposits, or with `printing` any, lead below what is printed already."""
+    """{cell: [(depth, line)]}: where moves without deposits, or with `printing` any, lead below what is printed."""
     top, hits = {}, collections.defaultdict(list)
     for move in side.moves:
         if move.length and (printing or not move.deposits):
@@ -170,8 +170,8 @@ def is_thin(move, full):
 
 
 def ironing_of(side):
-    """The thin deposits most of whose length lies upon full ones of the same height, where they cover an area: the filling
-    of a narrow gap is thin, too."""
+    """The thin deposits most of whose length lies upon full ones of the same height, where they cover an area: the
+    filling of a narrow gap is thin, too."""
     full, printed, found = flows(side), set(), []
     for move in side.deposits():
         z = round(move.z1, 3)
@@ -355,16 +355,16 @@ def islands_of(moves, size):
 
 
 def rests(side, size):
-    """{(z, an island's least cell): (seconds, whether anything is printed)} between the end of what lies below an island
-    and its begin."""
+    """{(z, an island's least cell): (seconds, whether anything is printed)} between the end of what lies below an
+    island and its begin."""
     found, below, begins = {}, {}, [move.begin for move in side.deposits()]
     for z, moves in layers_of(side):
         now = {}
         for cells, begin, end in islands_of(moves, size):
             under = [below[cell] for cell in cells if cell in below]
             if under:
-                deposits_between = bisect.bisect_left(begins, begin - 1e-6) - bisect.bisect_left(begins, max(under) - 1e-6)
-                found[z, min(cells)] = begin - max(under), deposits_between > 0
+                first, end = (bisect.bisect_left(begins, moment - 1e-6) for moment in (max(under), begin))
+                found[z, min(cells)] = begin - max(under), end > first
             for cell in cells:
                 now[cell] = end
         below = {**below, **now}

@@ -90,8 +90,8 @@ class Checks(unittest.TestCase):
         low = layer(0.2, block(10, 0.2))
         beside = [line for line in low if not line.endswith("E0.3")] + ["G1 X15 Y10", "G1 X15 Y9"]
 
-        self.assertEqual(list(checks.obstacles(*(print_trace.trace("\n".join(high + lines)) for lines in (low, low + beside)),
-                                               None)), [])
+        before, after = (print_trace.trace("\n".join(high + lines)) for lines in (low, low + beside))
+        self.assertEqual(list(checks.obstacles(before, after, None)), [])
 
     def test_travel_through_a_tower_is_found(self):
         tower = HEAD + [line for n in range(1, 20) for line in layer(n * 0.2, block(20, n * 0.2))]
