@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <random>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/status/status.h"
 #include "absl/strings/cord.h"
 #include "absl/strings/match.h"
@@ -224,8 +227,23 @@ grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext
   // A cleaning after the last layer happens only if another layer follows.
   const bool empty_layer =
       run.end < layers.size() && CleaningDueAfter(options, run.end - run.begin - 1);
-  std::thread sender(
-      [&] { Send(options, layers.subspan(run.begin, run.end - run.begin), empty_layer, *stream); });
+  bool sent = true;
+  const auto send = [&] {
+    try {
+      Send(options, layers.subspan(run.begin, run.end - run.begin), empty_layer, *stream);
+    } catch (const std::bad_alloc&) {
+      sent = false;
+      context.TryCancel();
+    }
+  };
+  std::jthread sender;
+  absl::Cleanup give_up = [&context] { context.TryCancel(); };  // lets the sender end
+  try {
+    sender = std::jthread(send);
+  } catch (const std::system_error&) {  // the process may have no more threads
+    sent = false;
+    context.TryCancel();
+  }
   v1::OptimizeResponse response;
   while (stream->Read(&response)) {
     fault = collector.Take(std::move(response), run);
@@ -236,8 +254,11 @@ grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext
     response.Clear();
   }
   // When the server has ended the call, a write that waits for room returns.
-  sender.join();
-  return stream->Finish();
+  std::move(give_up).Cancel();
+  if (sender.joinable()) sender.join();
+  const grpc::Status status = stream->Finish();
+  if (sent) return status;
+  return {grpc::StatusCode::UNAVAILABLE, "there is no memory or no thread to send the job with"};
 }
 
 // False if `cancel` came first.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -22,10 +23,16 @@ void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body,
     }
   };
   const size_t helpers = std::min(n, static_cast<size_t>(std::max(threads, 1)));
-  std::vector<std::thread> pool;
-  for (size_t t = 1; t < helpers; ++t) pool.emplace_back(work);
-  work();
-  for (std::thread& thread : pool) thread.join();
+  {
+    std::vector<std::jthread> pool;
+    pool.reserve(helpers);
+    try {
+      while (pool.size() + 1 < helpers) pool.emplace_back(work);
+    } catch (const std::system_error&) {
+      // The process may have no more threads: those that there are do it all.
+    }
+    work();
+  }
   if (fault != nullptr) std::rethrow_exception(fault);
 }
 

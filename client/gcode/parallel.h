@@ -10,7 +10,8 @@
 
 namespace traverse::gcode {
 
-// Calls body(0) to body(n - 1) on at most `threads` threads, unless `limit` ends first. Returns
+// Calls body(0) to body(n - 1) on at most `threads` threads, fewer where the system gives no more,
+// unless `limit` ends first. Returns
 // when all have returned. What one of them throws, because there is no memory, reaches the caller.
 void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body,
                  const WorkLimit& limit = {});

@@ -4,6 +4,7 @@
 #include <future>
 #include <optional>
 #include <stop_token>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -111,18 +112,23 @@ PrinterApi::~PrinterApi() {
   while (threads_ > 0) ended_.Wait(mutex_);
 }
 
-void PrinterApi::Spawn(std::function<void()> work) {
-  {
+void PrinterApi::Spawn(HttpReply& reply, std::function<void()> work) {
+  const auto add = [this](int threads) {
     MutexLock lock(mutex_);
-    ++threads_;
-  }
-  std::thread([this, work = std::move(work)]() mutable {
-    work();
-    work = nullptr;
-    MutexLock lock(mutex_);
-    --threads_;
+    threads_ += threads;
     ended_.NotifyAll();
-  }).detach();
+  };
+  add(1);
+  try {
+    std::thread([add, work = std::move(work)]() mutable {
+      work();
+      work = nullptr;
+      add(-1);
+    }).detach();
+  } catch (const std::system_error&) {
+    add(-1);
+    reply.Send(Problem(503, "this gateway has no thread for it now"));
+  }
 }
 
 HttpDecision PrinterApi::Handle(const HttpRequest& request, const std::string& caller) {
@@ -161,7 +167,7 @@ HttpDecision PrinterApi::HandleVersion(const HttpRequest& request, const std::st
   const std::string key = KeyFor(printer, request);
   return std::make_unique<NoBody>(
       [this, &printer, key, ticket = *ticket](std::shared_ptr<HttpReply> reply) {
-        Spawn([this, &printer, key, ticket, reply = std::move(reply)] {
+        Spawn(*reply, [this, &printer, key, ticket, reply] {
           const absl::StatusOr<UpstreamAnswer> answer = AskVersion(printer, key, options_.upstream);
           if (!answer.ok()) {
             reply->Send(Problem(absl::IsDeadlineExceeded(answer.status()) ? 504 : 502,
@@ -192,7 +198,7 @@ HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::str
     const FileRecord record = {"printers", caller, peer, wanted->name, file->size()};
     auto delivery = std::make_shared<Delivery>(
         Delivery{printer, *std::move(wanted), key, file, record, ticket, std::move(reply)});
-    Spawn([this, delivery] { Deliver(*delivery); });
+    Spawn(*delivery->reply, [this, delivery] { Deliver(*delivery); });
   };
   return TakeUpload(request, *core_.spool, limits, start);
 }

@@ -57,8 +57,9 @@ class PrinterApi {
   void Optimise(Delivery& delivery);
   void Answer(Delivery& delivery, const absl::StatusOr<UpstreamAnswer>& answer);
 
-  // Runs `work`, which waits for others, on a thread of its own.
-  void Spawn(std::function<void()> work);
+  // Runs `work`, which waits for others, on a thread of its own. Answers `reply` itself if the
+  // process may have no more threads.
+  void Spawn(HttpReply& reply, std::function<void()> work);
 
   Core& core_;
   const PrinterApiOptions options_;

@@ -94,17 +94,37 @@ class Time(unittest.TestCase):
         with open(f"/proc/{gateway.process.pid}/status", encoding="utf-8") as status:
             return 1024 * int(re.search(r"VmSize:\s+(\d+)", status.read())[1])
 
-    def test_a_packed_file_that_there_is_no_memory_to_measure_is_refused(self):
-        gateway = Gateway()
-        self.addCleanup(gateway.close)
-        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)  # starts all threads there will be
+    def settled_addresses(self, gateway):
+        """The same, once all threads have begun that there will be."""
         size, before = self.addresses(gateway), 0
         while size != before:
             time.sleep(0.3)
             size, before = self.addresses(gateway), size
         if size > 1 << 40:
             self.skipTest("a sanitizer has taken all addresses")
-        most = size + (32 << 20)
+        return size
+
+    def test_layers_for_which_the_process_has_no_thread_are_refused(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        layers = b'{"layers": [{"islands": [{"contours": [{"points": [1, 2]}]}]}]}'
+
+        def status():
+            return gateway.ask("POST", "/v1/optimize?deadline=5s", layers, {"Content-Type": "application/json"})[0]
+
+        self.assertEqual(status(), 200)
+        most = self.settled_addresses(gateway) + (1 << 20)  # a thread has 8 MiB
+        resource.prlimit(gateway.process.pid, resource.RLIMIT_AS, (most, resource.RLIM_INFINITY))
+        refused = [status() for _ in range(3)]
+        resource.prlimit(gateway.process.pid, resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        self.assertEqual(set(refused) - {200, 503, 504}, set())
+        self.assertEqual(status(), 200)
+
+    def test_a_packed_file_that_there_is_no_memory_to_measure_is_refused(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)  # starts all threads there will be
+        most = self.settled_addresses(gateway) + (32 << 20)
         resource.prlimit(gateway.process.pid, resource.RLIMIT_AS, (most, most))
         for first in (b"\x1f\x8b", b"GCDE\x01\0\0\0\0\0"):
             status, _, answer = gateway.ask("POST", "/v1/gcode", first + bytes(100_000_000))
