@@ -9,5 +9,5 @@ folder=${1:-client/pictures}
 traverse=${TRAVERSE:-build/release/client/traverse}
 plate=deploy/samples/brackets8.gcode.xz
 for policy in safe balanced free fast; do
-  "$traverse" optimize "$plate" --quiet --policy="$policy" -o /dev/null --layer=6 --picture="$folder/$policy.svg"
+  "$traverse" optimize "$plate" --quiet --policy="$policy" -o /dev/null --layers=5-7 --layer=6 --picture="$folder/$policy.svg"
 done
