@@ -5,6 +5,7 @@
 
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "absl/status/status.h"
 
@@ -32,6 +33,10 @@ inline Outcome UsageFault(std::string message) { return {kUsageFault, std::move(
 inline Outcome UsageFault(const absl::Status& status) {
   return {kUsageFault, std::string(status.message())};
 }
+
+// A value, or how the command ends without one.
+template <typename T>
+using Expected = std::variant<T, Outcome>;
 
 }  // namespace traverse::cli
 

@@ -22,10 +22,6 @@
 
 namespace traverse::cli {
 
-// A value, or how the command ends without one.
-template <typename T>
-using Expected = std::variant<T, Outcome>;
-
 // How to rewrite G-code.
 struct RewriteFlags {
   GcodeOptions gcode;

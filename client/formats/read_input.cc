@@ -9,6 +9,7 @@
 #include "client/files/read_file.h"
 #include "client/formats/api_format.h"
 #include "client/formats/detect.h"
+#include "client/gcode/gcode_job.h"
 #include "client/gtsp/reader.h"
 
 namespace traverse {

@@ -12,10 +12,12 @@
 
 #include "absl/status/statusor.h"
 #include "client/containers/container.h"
-#include "client/gcode/gcode_job.h"
-#include "client/input/input_job.h"
+#include "client/gcode/gcode_options.h"
+#include "client/input/input_format.h"
 
 namespace traverse {
+
+struct InputJob;  // client/input/input_job.h
 
 // Which texts of a container to read, and how to open it.
 struct PlateOptions {

@@ -14,6 +14,7 @@
 #include "client/gcode/machine/label.h"
 #include "client/gcode/model/feature.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/text/text.h"
 

@@ -14,11 +14,14 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/part_links.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/stated_progress.h"
+#include "client/input/input_job.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse {
 namespace gcode {

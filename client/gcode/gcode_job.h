@@ -4,31 +4,24 @@
 #define TRAVERSE_CLIENT_GCODE_GCODE_JOB_H_
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
-#include "client/gcode/machine/machine_limits.h"
+#include "client/gcode/gcode_options.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/placed_path.h"
-#include "client/gcode/plan/policy.h"
-#include "client/gcode/work_limit.h"
-#include "client/input/input_job.h"
-#include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse {
 
-struct GcodeOptions : gcode::Liberties {
-  static constexpr double kMostRevisitSeconds = 3600;
+struct InputJob;
 
-  // Replaces what files state about their machine.
-  std::optional<gcode::MachineLimits> machine = {};
-
-  gcode::WorkLimit limit = {};  // of reading a file, and of all that is done with it
-};
+namespace v1 {
+class Layer;
+class LayerResult;
+}  // namespace v1
 
 // The job in `file`: a plan for each of its layers, the cost of travel (a time) as the file's own
 // moves show it, a strategy that searches short files for longer than long ones, and most of what
@@ -43,9 +36,9 @@ absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job,
                                                     const GcodeOptions& options = {});
 
 // The layers of `job`, which comes from G-code, with plans of less freedom: a second way to search
-// for an order (policy.h). If `found` has more crossings than given, or is missing, crossings cost
-// more, unless any are allowed. Otherwise, if it is longer, which Policy::kSafe forbids, crossings
-// and retractions cost nothing, except in files whose travel leads around walls.
+// for an order (layer_plan.h). If `found` has more crossings than given, or is missing, crossings
+// cost more, unless any are allowed. Otherwise, if it is longer, which Policy::kSafe forbids,
+// crossings and retractions cost nothing, except in files whose travel leads around walls.
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
                                     absl::Span<const v1::LayerResult> found = {});
 

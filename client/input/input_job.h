@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/input/input_format.h"
 #include "traverse/v1/options.pb.h"
 #include "traverse/v1/plan.pb.h"
 
@@ -25,15 +26,6 @@ class HiddenMoves;  // client/gcode/hidden
 namespace gtsp {
 struct Instance;  // client/gtsp
 }
-
-// The formats that the client reads.
-enum class InputFormat {
-  kDamat,
-  kGcode,
-  kJson,   // OptimizeBatchRequest in protobuf's JSON mapping
-  kProto,  // OptimizeBatchRequest in wire format
-  kGtsp,   // GTSPLIB
-};
 
 // Notes on the paths of one layer that is a plan; either list may be empty. Layers of islands need
 // none.

@@ -9,6 +9,7 @@
 #include "client/cli/flags/connection_flags.h"
 #include "client/cli/flags/strategy_spec.h"
 #include "client/cli/help.h"
+#include "client/input/input_job.h"
 
 namespace traverse::loadgen {
 namespace {

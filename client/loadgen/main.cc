@@ -16,6 +16,7 @@
 #include "client/cli/terminal.h"
 #include "client/files/write_file.h"
 #include "client/formats/read_input.h"
+#include "client/input/input_job.h"
 #include "client/loadgen/job_bytes.h"
 #include "client/loadgen/load_report.h"
 #include "client/loadgen/load_run.h"

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/files/read_file.h"
+#include "client/gcode/gcode_job.h"
 #include "client/gcode/parallel.h"
 
 namespace traverse {

@@ -19,7 +19,7 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "client/api/optimizer_client.h"
-#include "client/gcode/gcode_job.h"
+#include "client/gcode/gcode_options.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/stated_times.h"
 #include "client/input/input_job.h"

@@ -10,6 +10,7 @@
 #include "absl/strings/match.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/read/reader.h"
+#include "client/input/input_job.h"
 #include "tests/fuzz/support/check.h"
 #include "tests/fuzz/support/gcode_mutator.h"
 

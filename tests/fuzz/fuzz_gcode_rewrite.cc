@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"

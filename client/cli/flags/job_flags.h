@@ -10,9 +10,12 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "client/cli/flags/flags.h"
-#include "client/gcode/gcode_job.h"
-#include "client/input/input_job.h"
+#include "client/gcode/gcode_options.h"
 #include "client/optimize_file/job_settings.h"
+
+namespace traverse {
+struct InputJob;
+}
 
 namespace traverse::cli {
 

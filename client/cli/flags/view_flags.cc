@@ -9,10 +9,12 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/help.h"
+#include "client/cli/service.h"
 #include "client/files/write_file.h"
 #include "client/gcode/parallel.h"
 #include "client/view/drawing/picture.h"
 #include "client/view/report_page.h"
+#include "client/view/scene/scene.h"
 
 namespace traverse::cli {
 namespace {

@@ -12,12 +12,23 @@
 #include "absl/status/statusor.h"
 #include "client/cli/flags/flags.h"
 #include "client/cli/flags/job_flags.h"
-#include "client/cli/service.h"
-#include "client/input/input_job.h"
-#include "client/report/run.h"
-#include "client/view/scene/scene.h"
+#include "client/cli/outcome.h"
 
-namespace traverse::cli {
+namespace traverse {
+
+struct InputJob;
+
+namespace report {
+struct JobRun;
+}
+
+namespace view {
+struct Scene;
+}
+
+namespace cli {
+
+class Service;
 
 struct ViewFlags {
   std::string picture;            // a file; empty: none
@@ -44,6 +55,7 @@ Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, con
 // Writes what the flags request, each file whole or not at all.
 absl::Status WriteViews(const ViewFlags& flags, const view::Scene& scene);
 
-}  // namespace traverse::cli
+}  // namespace cli
+}  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_

@@ -15,6 +15,7 @@
 #include "client/gateway/work/guarded.h"
 #include "client/gateway/work/permissions.h"
 #include "client/gateway/work/verify_answer.h"
+#include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/parallel.h"

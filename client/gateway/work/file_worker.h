@@ -14,16 +14,18 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "client/api/optimizer_client.h"
 #include "client/containers/container.h"
 #include "client/formats/read_input.h"
 #include "client/gateway/spool/spool.h"
-#include "client/gcode/gcode_job.h"
+#include "client/gcode/gcode_options.h"
 #include "client/gcode/verify/permissions.h"
-#include "client/input/input_job.h"
 #include "client/optimize_file/job_settings.h"
 #include "traverse/v1/gcode_service.pb.h"
 #include "traverse/v1/options.pb.h"
+
+namespace traverse {
+class OptimizerClient;
+}
 
 namespace traverse::gateway {
 

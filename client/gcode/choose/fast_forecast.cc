@@ -9,6 +9,7 @@
 
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/hidden/hidden_moves.h"
+#include "client/gcode/plan/layer_freedom.h"
 
 namespace traverse::gcode {
 namespace {

@@ -17,6 +17,7 @@
 #include "client/gcode/choose/rested_row.h"
 #include "client/gcode/hidden/hidden_moves.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/stacked_islands.h"
 
 namespace traverse::gcode {

@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "client/gcode/machine/machine_limits.h"
+#include "client/gcode/text/lexer.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -30,7 +31,8 @@ absl::Status ForEachLine(std::string_view text, Visit visit) {
   return absl::OkStatus();
 }
 
-// The greatest limit, in any unit: beyond all machines, and far from where sums of squares are not finite.
+// The greatest limit, in any unit: beyond all machines, and far from where sums of squares are not
+// finite.
 inline constexpr double kGreatestLimit = 1e9;
 
 // Which values a setting may have.

@@ -10,6 +10,7 @@
 #include "client/files/utf8_mark.h"
 #include "client/gcode/machine/klipper_limits.h"
 #include "client/gcode/machine/limit_text.h"
+#include "client/gcode/machine/machine_profile.h"
 #include "client/gcode/text/lexer.h"
 #include "client/gcode/text/text.h"
 

@@ -17,9 +17,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/gcode/machine/machine_profile.h"
 
 namespace traverse::gcode {
+
+struct MachineProfile;
 
 // Lengths in mm, speeds in mm/s, accelerations in mm/s^2. Unset: not stated.
 struct MachineLimits {

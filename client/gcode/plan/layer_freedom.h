@@ -9,7 +9,15 @@
 #include <utility>
 #include <vector>
 
-namespace traverse::gcode {
+namespace traverse {
+
+struct GcodeFile;
+
+namespace gcode {
+
+enum class Policy : uint8_t;
+struct Allowance;
+struct Layer;
 
 struct PathRule {
   bool pinned = false;   // stays where and as it is
@@ -30,6 +38,11 @@ struct LayerFreedom {
   std::vector<std::pair<uint32_t, uint32_t>> ordered;  // the first of them comes before the second
 };
 
-}  // namespace traverse::gcode
+// What the plan of a layer allows, without the plan.
+LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
+                       const Allowance& allow);
+
+}  // namespace gcode
+}  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_

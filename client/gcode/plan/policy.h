@@ -1,11 +1,4 @@
-// Which paths of a layer may change places.
-//
-//   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
-//    |                                (unless it is allowed, as it is under `free`, or the fan is
-//    |                                stated for each path) a change of the fan
-//    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
-//    +- path                          paths that touch; pinned paths stand alone
-//    +- any_order(islands of any_order(paths, before))      with the latitude kIslands
+// What may change in a sliced file: policies, allowances, crossings.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_POLICY_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_POLICY_H_
@@ -14,11 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "client/gcode/model/outline.h"
-#include "client/gcode/plan/layer_freedom.h"
-#include "traverse/v1/plan.pb.h"
 
 namespace traverse::gcode {
 
@@ -97,16 +85,6 @@ struct Liberties {
   double min_revisit_seconds = 0;
 };
 
-// A layer as a plan. Plan.paths[i] is the block `first_block + i`; vertex k of a contour is point k
-// of its outline.
-struct LayerPlan {
-  v1::Plan plan;
-  std::vector<Outline> outlines;  // [path]
-  std::vector<uint32_t> island;   // [path] the connected region of the layer that it lies in
-  int64_t movable = 0;            // paths that may change places with another one
-  LayerFreedom freedom;           // what the plan allows
-};
-
 // How widely to search among the orders that a policy allows. The narrower the latitude, the closer
 // a search gets to its optimum.
 enum class Latitude : uint8_t {
@@ -118,13 +96,6 @@ enum class Latitude : uint8_t {
   // no more often than necessary.
   kIslands,
 };
-
-LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
-                        Latitude latitude = Latitude::kFull, const Allowance& allow = {});
-
-// What the plan of a layer allows, without the plan.
-LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
-                       const Allowance& allow);
 
 }  // namespace traverse::gcode
 

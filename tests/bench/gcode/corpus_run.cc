@@ -13,6 +13,7 @@
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
+#include "client/input/input_job.h"
 
 namespace traverse::bench {
 namespace {

@@ -26,6 +26,7 @@
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/rewrite.h"
+#include "client/input/input_job.h"
 
 namespace traverse::bench {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "client/formats/read_input.h"
+#include "client/input/input_job.h"
 #include "engine/base/rng.h"
 #include "nlohmann/json.hpp"
 #include "server/translate/translate.h"

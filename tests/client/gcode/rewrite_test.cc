@@ -11,6 +11,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/stated_times.h"
 #include "client/gcode/text/digest_line.h"

@@ -15,6 +15,7 @@
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
+#include "client/input/input_job.h"
 #include "tests/client/gcode/support/samples.h"
 
 namespace traverse::gcode {

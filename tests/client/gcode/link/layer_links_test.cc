@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/write/layer_writer.h"
 #include "engine/base/rng.h"

@@ -11,6 +11,7 @@
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
+#include "client/input/input_job.h"
 
 namespace traverse::gcode {
 namespace {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "client/gcode/gcode_job.h"
+#include "client/input/input_job.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/gcode/plan/policy.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 
 namespace traverse::gcode {

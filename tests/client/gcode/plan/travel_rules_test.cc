@@ -13,7 +13,9 @@
 #include "client/gcode/model/loops.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/write/layer_writer.h"
+#include "client/input/input_job.h"
 #include "tests/client/gcode/support/sketch.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse::gcode {
 namespace {

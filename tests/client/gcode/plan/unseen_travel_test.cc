@@ -5,6 +5,7 @@
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/plan/travel_rules.h"
+#include "client/input/input_job.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"

@@ -9,6 +9,7 @@
 
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/model/loops.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"

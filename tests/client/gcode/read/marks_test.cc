@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/gcode/model/feature.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/random_order.h"

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "client/gcode/model/outline.h"
+#include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode::testing {

@@ -11,6 +11,10 @@
 #include "client/gcode/write/layer_writer.h"
 #include "engine/base/rng.h"
 
+namespace traverse::v1 {
+class Plan;
+}
+
 namespace traverse::gcode::testing {
 
 // Any order and any entries that `plan` allows.

@@ -13,6 +13,7 @@
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/plan/travel_rules.h"
+#include "client/input/input_job.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {
