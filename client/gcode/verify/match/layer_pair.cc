@@ -139,8 +139,8 @@ void LayerPair::LearnFacts() {
     facts.closed = IsClosed(was_, path);
     facts.path_class = traced.path_class;
     // Whether an overhanging wall is an outer one the rest of its loop tells, if that has a name.
-    facts.outer = IsWallClass(traced.path_class) &&
-                  (traced.outer || (traced.overhangs && !traced.inner));
+    facts.outer =
+        IsWallClass(traced.path_class) && (traced.outer || (traced.overhangs && !traced.inner));
   }
 }
 
