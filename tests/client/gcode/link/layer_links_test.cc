@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
@@ -21,8 +23,6 @@
 
 namespace traverse::gcode {
 namespace {
-
-class DecidedLinks : public ::testing::TestWithParam<std::string> {};
 
 // About so many layers of a file are looked at.
 constexpr size_t kLayers = 6;
@@ -75,20 +75,32 @@ class WrittenLayer {
   std::vector<PartStart> states_;  // [mark]
 };
 
+class DecidedLinks : public ::testing::TestWithParam<std::string> {
+ protected:
+  // Calls `check` with the writer of some layers of the file, and a random order of each.
+  static void ForRandomOrders(
+      const std::function<void(const LayerWriter& writer, const LayerOrder& order)>& check) {
+    const auto read = ReadGcode(testing::TextOf(GetParam()), "part.gcode");
+    ASSERT_TRUE(read.ok()) << read.status();
+    const GcodeFile& file = **read;
+    const RetractionHabit habit = HabitOfNewTravels(file);
+    const LinkDonors donors(file);
+    Rng rng(1);
+    for (size_t i = 0; i < file.layers.size(); i += 1 + file.layers.size() / kLayers) {
+      const Layer& layer = file.layers[i];
+      if (HasScripts(file, layer)) continue;
+      const LayerWriter writer(file, layer, habit, donors);
+      const LayerOrder order =
+          testing::RandomOrder(layer, MakeLayerPlan(file, layer, Policy::kFree).plan, rng);
+      SCOPED_TRACE(absl::StrCat("layer ", i));
+      check(writer, order);
+    }
+  }
+};
+
 TEST_P(DecidedLinks, RetractAsOftenAsIsWritten) {
-  const auto read = ReadGcode(testing::TextOf(GetParam()), "part.gcode");
-  ASSERT_TRUE(read.ok()) << read.status();
-  const GcodeFile& file = **read;
-  const RetractionHabit habit = HabitOfNewTravels(file);
-  const LinkDonors donors(file);
-  Rng rng(1);
-  for (size_t i = 0; i < file.layers.size(); i += 1 + file.layers.size() / kLayers) {
-    const Layer& layer = file.layers[i];
-    if (HasScripts(file, layer)) continue;
-    const LayerWriter writer(file, layer, habit, donors);
-    const LayerOrder order =
-        testing::RandomOrder(layer, MakeLayerPlan(file, layer, Policy::kFree).plan, rng);
-    const PartStart start = StartOfPaths(file, order.front());
+  ForRandomOrders([](const LayerWriter& writer, const LayerOrder& order) {
+    const PartStart start = StartOfPaths(writer.file(), order.front());
     std::string text;
     writer.WriteBarePaths(order, start, text);
     int64_t decided = 0;
@@ -98,28 +110,17 @@ TEST_P(DecidedLinks, RetractAsOftenAsIsWritten) {
           writer.EstimateTravel(places[place], order[place - 1], order[place]);
       decided += link.retractions;
     }
-    EXPECT_EQ(decided, Measure(file, text, start).retractions) << "layer " << i;
-  }
+    EXPECT_EQ(decided, Measure(writer.file(), text, start).retractions);
+  });
 }
 
 // With a retraction to a millisecond; else nearly as well, as the paths beside a link are followed
 // only as far as it takes to get going.
 TEST_P(DecidedLinks, TakeAsLongAsIsWritten) {
-  const auto read = ReadGcode(testing::TextOf(GetParam()), "part.gcode");
-  ASSERT_TRUE(read.ok()) << read.status();
-  const GcodeFile& file = **read;
-  const RetractionHabit habit = HabitOfNewTravels(file);
-  const LinkDonors donors(file);
-  Rng rng(1);
-  for (size_t i = 0; i < file.layers.size(); i += 1 + file.layers.size() / kLayers) {
-    const Layer& layer = file.layers[i];
-    if (HasScripts(file, layer)) continue;
-    const LayerWriter writer(file, layer, habit, donors);
-    const LayerOrder order =
-        testing::RandomOrder(layer, MakeLayerPlan(file, layer, Policy::kFree).plan, rng);
+  ForRandomOrders([](const LayerWriter& writer, const LayerOrder& order) {
     const std::vector<uint32_t> places = writer.PlacesOf(order);
     const WrittenLayer written(writer, order);
-    LinkParts parts(file);
+    LinkParts parts(writer.file());
     double off[2] = {};
     int64_t links[2] = {};
     for (size_t place = 1; place < order.size(); ++place) {
@@ -131,9 +132,9 @@ TEST_P(DecidedLinks, TakeAsLongAsIsWritten) {
       off[open] += std::abs(link.seconds - restart - written.LinkSeconds(place));
       ++links[open];
     }
-    EXPECT_LE(off[0], .001 * static_cast<double>(links[0])) << "layer " << i << " " << links[0];
-    EXPECT_LE(off[1], .002 * static_cast<double>(links[1])) << "layer " << i << " " << links[1];
-  }
+    EXPECT_LE(off[0], .001 * static_cast<double>(links[0])) << links[0];
+    EXPECT_LE(off[1], .002 * static_cast<double>(links[1])) << links[1];
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Kept, DecidedLinks, ::testing::ValuesIn(testing::KeptFiles()),
