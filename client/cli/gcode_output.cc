@@ -44,11 +44,12 @@ absl::Status CheckKind(const InputFile& input, ContainerKind kind) {
 }  // namespace
 
 std::vector<Flag> ContainerFlagTable() {
-  return OfTopic(kSlicedTopic, Joined({{"container",
-                                        "KIND",
-                                        "text or bgcode (default: by OUTPUT, or as INPUT)",
-                                        {"text", "bgcode"}}},
-                                      PlateFlagTable()));
+  return Joined({{.name = "container",
+                  .value = "KIND",
+                  .help = "text or bgcode (default: by OUTPUT, or as INPUT)",
+                  .choices = {"text", "bgcode"},
+                  .topic = kSlicedTopic}},
+                PlateFlagTable());
 }
 
 std::vector<Flag> PlateFlagTable() {
