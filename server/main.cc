@@ -48,6 +48,9 @@ int Run(const Daemon& daemon) {
   JobLog& log = *(*server)->core().files.log;
   log.Event(JobLog::Level::kInfo, "started",
             {{"version", kVersion}, {"port", absl::StrCat((*server)->port())}});
+  if (const std::string few = FewFiles(); !few.empty()) {
+    log.Event(JobLog::Level::kWarning, "few_files", {{"message", few}});
+  }
 
   const int signal = daemon.WaitForEnd(log, [&] { (*server)->Reload(); });
   const bool port_lost = signal == kPortLost;

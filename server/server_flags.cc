@@ -1,7 +1,6 @@
 #include "server/server_flags.h"
 
 #include <absl/flags/flag.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <climits>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/net/open_files.h"
 #include "server/ops/flag_reader.h"
 #include "server/ops/memory.h"
 
@@ -156,18 +156,22 @@ void SetMemory(ServerOptions& options) {
   limits.max_bytes_per_caller = per_caller > 0 ? per_caller : limits.max_bytes / 2;
 }
 
-// Each connection has two descriptors, gRPC's and one to watch it by; some are for others.
+// As many as it serves well; the limit of open files may allow fewer, see FilesFor.
 int MaxConnections() {
+  constexpr int kMost = 16'384;
   const int given = absl::GetFlag(FLAGS_max_connections);
-  if (given > 0) return given;
-  constexpr rlim_t kOtherFiles = 160, kMost = 16'384;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 1;
-  const rlim_t files = std::min(limit.rlim_cur, 2 * kMost + kOtherFiles);
-  return files <= kOtherFiles ? 16 : static_cast<int>((files - kOtherFiles) / 2);
+  return given > 0 ? given : kMost;
 }
 
 }  // namespace
+
+std::string FewFiles() {
+  const int given = absl::GetFlag(FLAGS_max_connections);
+  const int most = PlacesFor(/*part=*/1, Connections::kFilesOfConnection, MaxConnections());
+  if (given <= most) return "";
+  return absl::StrCat("the limit of ", MaxOpenFiles(), " open files leaves room for ", most,
+                      " connections, not ", given);
+}
 
 ServerOptions OptionsFromFlags() {
   ServerOptions options;

@@ -23,6 +23,10 @@ absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments)
 // The options that the flags state, after ReadFlags.
 ServerOptions OptionsFromFlags();
 
+// Of what the limit of open files leaves room for less than a flag says, in words; empty: of
+// nothing.
+std::string FewFiles();
+
 absl::Duration DrainTimeout();
 
 }  // namespace traverse

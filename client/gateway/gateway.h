@@ -45,6 +45,10 @@ struct GatewayOptions {
   std::string printers_file;  // empty: no printers
   absl::Duration upload_deadline = absl::Seconds(60);
   UpstreamLimits upstream;
+
+  // Of what the limit of open files leaves room for less than flags say, in words; empty: of
+  // nothing.
+  std::string few_files;
 };
 
 // Thread-safe.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/files/read_file.h"
 #include "client/gateway/jobs/job_ids.h"
+#include "server/net/open_files.h"
 #include "server/ops/flag_reader.h"
 #include "server/ops/memory.h"
 #include "server/server.h"
@@ -206,6 +208,39 @@ std::string GatewayName() {
   return name.substr(0, 64);
 }
 
+// The files that may be open: half for connections, a quarter for the results of jobs, and one for
+// requests, which have their uploads, events, an answer, and those of a call to a printer.
+void ShareFiles(GatewayOptions& options) {
+  constexpr double kGrpcPart = 1.0 / 3, kHttpPart = 1.0 / 6, kJobsPart = 0.25, kRequestsPart = 0.25;
+  constexpr int kFilesOfRequest = 4, kFilesOfPrinter = 4;
+  const bool printers = !options.printers_file.empty();
+  JobLimits& jobs = options.core.jobs;
+  WorkLimits& work = options.core.work;
+  std::string few;
+  const auto fit = [&few](double part, int files_each, int64_t wanted, const char* what) {
+    const int most =
+        PlacesFor(part, files_each, static_cast<int>(std::min<int64_t>(wanted, INT_MAX)));
+    if (most < wanted) absl::StrAppend(&few, few.empty() ? "" : ", ", most, " ", what);
+    return std::min<int64_t>(wanted, most);
+  };
+  // Connections look at the limit again whenever one comes.
+  options.connections.files_part = kGrpcPart;
+  options.http.files_part = kHttpPart;
+  if (!options.listen.empty()) {
+    fit(kGrpcPart, Connections::kFilesOfConnection, options.connections.max_connections,
+        "connections of gRPC");
+  }
+  fit(kHttpPart, 1, options.http.max_connections, "connections of HTTP");
+  jobs.max_jobs =
+      static_cast<uint64_t>(fit(kJobsPart, 1, static_cast<int64_t>(jobs.max_jobs), "jobs"));
+  work.max_requests =
+      static_cast<int>(fit(kRequestsPart, kFilesOfRequest + (printers ? kFilesOfPrinter : 0),
+                           work.max_requests, "requests"));
+  if (few.empty()) return;
+  options.few_files =
+      absl::StrCat("the limit of ", MaxOpenFiles(), " open files leaves room for ", few);
+}
+
 int64_t MaxMemory() {
   const int64_t given = absl::GetFlag(FLAGS_max_memory);
   return given > 0 ? given : MemoryLimit() / 4 * 3;
@@ -260,6 +295,7 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   options.printers_file = absl::GetFlag(FLAGS_printers);
   options.upload_deadline = absl::GetFlag(FLAGS_upload_deadline);
   options.upstream.idle_time = absl::GetFlag(FLAGS_upstream_idle_timeout);
+  ShareFiles(options);
   if (absl::Status status = SetServers(options); !status.ok()) return status;
   return options;
 }

@@ -33,6 +33,9 @@ int Run(const Daemon& daemon) {
   JobLog& log = *(*gateway)->core().files.log;
   log.Event(JobLog::Level::kInfo, "started",
             {{"version", kVersion}, {"port", absl::StrCat((*gateway)->http_port())}});
+  if (!options->few_files.empty()) {
+    log.Event(JobLog::Level::kWarning, "few_files", {{"message", options->few_files}});
+  }
 
   const int signal = daemon.WaitForEnd(log, [&] { (*gateway)->Reload(); });
   daemon.BeginDraining(signal, log);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "server/net/give_way.h"
+#include "server/net/open_files.h"
 #include "server/net/socket_info.h"
 #include "server/net/tcp_listen.h"
 
@@ -145,8 +146,7 @@ void Connections::AcceptAll(int listener) {
       MutexLock lock(mutex_);
       const Clock::time_point now = Clock::now();
       const bool banned = !peer.empty() && offenders_.IsBanned(AddressOf(peer), now);
-      const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
-      if (banned || peer.empty() || ours < 0 || (full && !MakeRoom(peer))) {
+      if (banned || peer.empty() || ours < 0 || (IsFull() && !MakeRoom(peer))) {
         close(socket);
         if (ours >= 0) close(ours);
         if (banned) ++cut_;
@@ -171,6 +171,11 @@ void Connections::WaitForRoom() {
     MakeRoom("");
   }
   poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
+}
+
+bool Connections::IsFull() const {
+  const int most = PlacesFor(rules_.files_part, kFilesOfConnection, rules_.max_connections);
+  return static_cast<int>(table_.size()) >= most;
 }
 
 // For a new one of `peer`, see GiveWay.

@@ -17,8 +17,9 @@
 // strangers twice sent too much, and for one that makes so many calls, over any number of
 // connections, that others wait.
 //
-// The service accepts connections itself, so that a process with all of its files open loses none:
-// it closes the newest, or the one idle longest. Knows nothing of gRPC. Thread-safe.
+// Each connection takes two files of the process, of which all together have only a part, so that
+// others can open theirs. Beyond that the one idle longest makes room, or the newest is closed.
+// Knows nothing of gRPC. Thread-safe.
 
 #ifndef TRAVERSE_SERVER_NET_CONNECTIONS_H_
 #define TRAVERSE_SERVER_NET_CONNECTIONS_H_
@@ -44,6 +45,7 @@ namespace traverse {
 
 struct ConnectionRules {
   int max_connections = 1024;
+  double files_part = 1;  // of the files that may be open, see FilesFor; fewer leave fewer of them
   int64_t stranger_bytes = int64_t{4} << 20;  // pending in addition to that of jobs
   int64_t job_bytes = int64_t{64} << 20;      // pending for each job
   int64_t quiet_bytes = int64_t{256} << 10;   // the same for longer than a moment
@@ -64,6 +66,9 @@ enum class Excess { kConnection, kAddress };
 class Connections {
  public:
   static constexpr int kHands = 8;
+
+  // gRPC's descriptor, and one to watch it by.
+  static constexpr int kFilesOfConnection = 2;
 
   struct Hooks {
     // Passes a new connection on, see HandOver; kHands threads call it.
@@ -141,6 +146,7 @@ class Connections {
   void Serve();
   void AcceptAll(int listener);
   void WaitForRoom() TRAVERSE_EXCLUDES(mutex_);
+  bool IsFull() const TRAVERSE_REQUIRES(mutex_);
   bool MakeRoom(const std::string& peer) TRAVERSE_REQUIRES(mutex_);
   Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
   void CutPeer(const std::string& peer) TRAVERSE_EXCLUDES(mutex_);

@@ -131,6 +131,7 @@ absl::StatusOr<std::unique_ptr<Listener>> Listener::Open(
 absl::Status Listener::OpenPort() {
   ConnectionRules rules;
   rules.max_connections = options_.limits.max_connections;
+  rules.files_part = options_.limits.files_part;
   // Twice what a message may have: a longer one that comes to its end gets a proper error.
   rules.job_bytes = 2 * options_.max_message_bytes;
   if (options_.max_memory != INT64_MAX) rules.all_bytes = options_.max_memory / kPendingPart;

@@ -36,6 +36,7 @@ namespace traverse {
 // Limits on one connection.
 struct ConnectionLimits {
   int max_connections = 1024;
+  double files_part = 1;  // see ConnectionRules
   int max_streams = 100;  // calls at a time
   int max_header_bytes = 16384;
   absl::Duration keepalive_time = absl::Seconds(30);     // idle time after which the peer is pinged

@@ -15,6 +15,7 @@
 #include "absl/time/clock.h"
 #include "client/gateway/http/session.h"
 #include "server/net/give_way.h"
+#include "server/net/open_files.h"
 
 namespace traverse::gateway {
 namespace {
@@ -112,6 +113,7 @@ class BeastServer : public HttpServer {
           co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
       if (error == net::error::operation_aborted) co_return;
       if (error) {  // no file descriptor is left, or the client has gone: others may come
+        if (error == net::error::no_descriptors) MakeRoom("");
         pause.expires_after(std::chrono::milliseconds(50));
         co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
         continue;
@@ -125,10 +127,14 @@ class BeastServer : public HttpServer {
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;
     const std::string address = PeerHostOf(peer);
-    if (connections_ >= options_.limits.max_connections && !MakeRoom(address)) {
+    const HttpLimits& limits = options_.limits;
+    const int most = PlacesFor(limits.files_part, /*files_each=*/1, limits.max_connections);
+    if (connections_ >= most && !MakeRoom(address)) {
       return Refuse(std::move(socket), "too many connections");
     }
-    if (addresses_[address] >= options_.limits.max_connections_per_address) {
+    const int64_t of_address =
+        int64_t{limits.max_connections_per_address} * most / limits.max_connections;
+    if (addresses_[address] >= std::max<int64_t>(1, of_address)) {
       return Refuse(std::move(socket), "too many connections from this address");
     }
     socket.set_option(tcp::no_delay(true), error);

@@ -21,6 +21,7 @@ namespace traverse::gateway {
 struct HttpLimits {
   int max_connections = 512;
   int max_connections_per_address = 384;
+  double files_part = 1;  // of the files that may be open, see FilesFor; fewer leave fewer of both
   uint32_t max_head_bytes = 16384;
   absl::Duration head_time = absl::Seconds(20);  // for a head, including the wait for it
   absl::Duration idle_time = absl::Seconds(30);  // without a byte of the body, either way

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/net/open_files.h"
 #include "server/net/tcp_listen.h"
 
 namespace traverse {
@@ -16,8 +17,11 @@ namespace {
 
 // Beyond this many the oldest is closed. The library's own limit, which would keep new ones out, is
 // never reached.
-constexpr size_t kKeptConnections = 64;
+constexpr int kKeptConnections = 64;
 constexpr unsigned int kMaxConnections = 4 * kKeptConnections;
+
+// Fewer where there are few files, see FilesFor; of the process's own.
+constexpr double kFilesPart = 1.0 / 12;
 
 constexpr unsigned int kTimeoutSeconds = 5;
 constexpr size_t kMaxHeadBytes = 8192;
@@ -86,7 +90,8 @@ MetricsHttp::~MetricsHttp() {
 void* MetricsHttp::OnOpened(int fd) {
   connections_.emplace(++opened_, fd);
   // The library learns of the end of the connection, then closes the socket and calls OnClosed.
-  if (connections_.size() > kKeptConnections) {
+  if (static_cast<int>(connections_.size()) >
+      PlacesFor(kFilesPart, /*files_each=*/1, kKeptConnections)) {
     const auto oldest = connections_.begin();
     shutdown(oldest->second, SHUT_RDWR);
     connections_.erase(oldest);

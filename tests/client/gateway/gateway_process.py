@@ -50,11 +50,12 @@ def square_wall(first):
 class Gateway:
     """A running gateway; ended by close()."""
 
-    def __init__(self, *flags, threads=1):
+    def __init__(self, *flags, threads=1, files=None):
+        prefix = ["prlimit", f"--nofile={files}:{files}"] if files else []
         self.spool = tempfile.TemporaryDirectory()
         self.log = tempfile.NamedTemporaryFile()
         self.process = subprocess.Popen(
-            [os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0", "--listen=127.0.0.1:0",
+            [*prefix, os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0", "--listen=127.0.0.1:0",
              "--metrics_listen=127.0.0.1:0", "--spool_dir=" + self.spool.name, "--log_file=" + self.log.name,
              f"--threads={threads}", *flags], stdout=subprocess.PIPE, text=True)
         ports = [self.process.stdout.readline().split()[-1] for _ in range(3)]

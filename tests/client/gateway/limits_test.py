@@ -53,6 +53,77 @@ class Disk(unittest.TestCase):
             self.assertEqual(os.listdir(spool), [])
 
 
+class Files(unittest.TestCase):
+    """Of what the process may open, nobody takes what others need."""
+
+    def few(self, files, *flags):
+        gateway = Gateway(*flags, files=files)
+        self.addCleanup(gateway.close)
+        return gateway
+
+    def connect(self, port, count, source):
+        held = []
+        for _ in range(count):
+            try:
+                held.append(socket.create_connection(("127.0.0.1", port), source_address=(source, 0), timeout=5))
+                self.addCleanup(held[-1].close)
+            except OSError:
+                pass  # turned away
+        return held
+
+    def ask_from(self, source, gateway, path, body):
+        other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=(source, 0), timeout=60)
+        self.addCleanup(other.close)
+        other.request("POST", path, body)
+        answer = other.getresponse()
+        return answer.status, answer.read()
+
+    def test_idle_connections_leave_files_to_uploads(self):
+        for files in (512, 256, 150):
+            gateway = self.few(files)
+            for source in ("127.0.0.3", "127.0.0.4"):
+                self.connect(gateway.grpc_port, 300, source)
+                self.connect(gateway.http_port, 300, source)
+                self.connect(gateway.metrics_port, 100, source)
+            for i in range(4):
+                status, answer = self.ask_from("127.0.0.2", gateway, "/v1/gcode", PART)
+                self.assertEqual(status, 200, (files, i, answer))
+
+    def test_a_limit_that_is_lowered_later_holds_too(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        resource.prlimit(gateway.process.pid, resource.RLIMIT_NOFILE, (512, 512))
+        self.connect(gateway.grpc_port, 600, "127.0.0.3")
+        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)
+
+    def test_jobs_that_are_kept_leave_files_to_others(self):
+        gateway = self.few(256)
+        answer = b""
+        for i in range(1000):
+            _, _, answer = gateway.ask("POST", "/v1/jobs", PART, {"Idempotency-Key": str(i)})
+            if b"this caller may have" in answer:
+                break
+            time.sleep(0.02)  # for work under way
+        self.assertIn(b"this caller may have 24 jobs now", answer)
+        for source, path, good in (("127.0.0.2", "/v1/jobs", 202), ("127.0.0.3", "/v1/gcode", 200)):
+            status, answer = self.ask_from(source, gateway, path, PART)
+            self.assertEqual(status, good, answer)
+
+    def test_the_start_says_what_files_are_too_few_for(self):
+        gateway = self.few(512)
+        gateway.ask("POST", "/v1/gcode", PART)
+        with open(gateway.log.name, encoding="utf-8") as file:
+            told = [line for line in file if '"few_files"' in line]
+        self.assertEqual(len(told), 1)
+        self.assertIn("the limit of 512 open files leaves room for 64 connections of gRPC, 64 connections of HTTP, 96 jobs, "
+                      "24 requests", told[0])
+        many = Gateway()
+        self.addCleanup(many.close)
+        many.ask("POST", "/v1/gcode", PART)
+        with open(many.log.name, encoding="utf-8") as file:
+            self.assertNotIn("few_files", file.read())
+
+
 class Time(unittest.TestCase):
     def test_the_best_until_the_deadline_or_a_reason(self):
         gateway = Gateway()

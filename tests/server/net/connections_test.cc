@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <memory>
 #include <string>
@@ -155,6 +156,24 @@ TEST(ConnectionsTest, WhoHasMostConnectionsMakesRoomForOthers) {
   EXPECT_TRUE(TestService::Eventually([&] { return many[0]->IsCut(); }));
   EXPECT_FALSE(many[1]->IsCut());
   EXPECT_FALSE(other.IsCut());
+}
+
+TEST(ConnectionsTest, FewFilesLeaveFewerConnections) {
+  Port port({.files_part = 0.25});
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &usual), 0);
+  const rlimit few{80, usual.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<std::unique_ptr<Caller>> idle;
+  for (int i = 0; i < 10; ++i) idle.push_back(std::make_unique<Caller>(port.connections().port()));
+
+  // A quarter of 60, two each.
+  EXPECT_TRUE(
+      TestService::Eventually([&] { return port.connections().cut() == 0 && idle[9]->IsCut(); }));
+  EXPECT_EQ(port.connections().open(), 7);
+  EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &usual), 0);
+  const Caller other(port.connections().port());
+  EXPECT_TRUE(TestService::Eventually([&] { return port.connections().open() == 8; }));
 }
 
 // As HTTP/2 lets it: each call is reset before the next one is opened.
