@@ -281,7 +281,7 @@ void AddFacts(const GcodeFile& file, const Census& census, Policy policy, InputJ
   const auto add = [&job](std::string key, std::string value) {
     job.facts.emplace_back(std::move(key), std::move(value));
   };
-  add("slicer", file.slicer.empty() ? "unknown" : file.slicer);
+  add("slicer", file.slicer.name.empty() ? "unknown" : file.slicer.name);
   for (size_t i = 0; i < census.paths.size(); ++i) {
     if (census.paths[i] == 0) continue;
     add(std::string(FeatureName(static_cast<Feature>(i))),

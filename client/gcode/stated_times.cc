@@ -8,6 +8,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/dialect/dialect.h"
 #include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/text/digest_line.h"
@@ -111,34 +112,17 @@ std::string RestateModelTime(std::string_view line, double factor) {
       FormatDuration(std::max<int64_t>(0, *total_seconds - *model_seconds + scaled)));
 }
 
-// Comments that state a time after a keyword.
-struct Stated {
-  std::string_view begin;  // of the comment, after ';' and blanks
-  char mark;               // the value follows it
-  bool first_layer;
-};
-constexpr std::array<Stated, 8> kStated = {{
-    {"estimated printing time", '=', false},
-    {"estimated first layer printing time", '=', true},
-    {"TIME:", ':', false},
-    {"TIME_ELAPSED:", ':', false},
-    {"PRINTING_TIME:", ':', false},
-    {"REMAINING_TIME:", ':', false},
-    {"Print Time:", ':', false},
-    {"Print time:", ':', false},
-}};
+double ScaleOf(const TimeWord& stated, const TimeScale& scale) {
+  return stated.first_layer ? scale.first_layer : scale.total;
+}
 
 std::string RestateComment(std::string_view line, const TimeScale& scale) {
   const std::string_view comment = Trim(line.substr(1));
   if (comment.starts_with("model printing time:")) return RestateModelTime(line, scale.total);
-  for (const Stated& stated : kStated) {
-    if (!comment.starts_with(stated.begin)) continue;
-    const size_t mark = comment.find(stated.mark);
-    if (mark == std::string_view::npos) break;
-    return WithScaled(line, Trim(comment.substr(mark + 1)),
-                      stated.first_layer ? scale.first_layer : scale.total);
-  }
-  return std::string(line);
+  const TimeWord* stated = TimeOf(comment);
+  const size_t mark = stated == nullptr ? comment.npos : comment.find_first_of(":=");
+  if (mark == comment.npos) return std::string(line);
+  return WithScaled(line, Trim(comment.substr(mark + 1)), ScaleOf(*stated, scale));
 }
 
 // Minutes left are whole ones, rounded down.
@@ -313,11 +297,8 @@ std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
 
 std::optional<std::string> RestateEntry(std::string_view key, std::string_view value,
                                         const TimeScale& scale) {
-  if (key.starts_with("estimated printing time")) return ScaleDuration(Trim(value), scale.total);
-  if (key.starts_with("estimated first layer printing time")) {
-    return ScaleDuration(Trim(value), scale.first_layer);
-  }
-  return std::nullopt;
+  const TimeWord* stated = TimeOf(key);
+  return stated == nullptr ? std::nullopt : ScaleDuration(Trim(value), ScaleOf(*stated, scale));
 }
 
 }  // namespace traverse::gcode

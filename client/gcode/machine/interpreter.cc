@@ -2,64 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "client/gcode/machine/label.h"
+#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialect/label.h"
 #include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
 
-bool IsWipeMark(std::string_view comment) {
-  return StartsWith(comment, ";WIPE_START") || StartsWith(comment, ";WIPE_END") ||
-         StartsWith(comment, "; WIPE_START") || StartsWith(comment, "; WIPE_END");
-}
-
-bool BeginsWipe(std::string_view mark) { return mark.find("_START") != std::string_view::npos; }
-
-bool IsLayerMark(std::string_view comment) {
-  // Simplify3D: `; layer 3, Z = 0.990`
-  constexpr std::string_view kNumbered = "; layer ";
-  if (StartsWith(comment, kNumbered)) {
-    const std::string_view number = comment.substr(kNumbered.size());
-    return !number.empty() && number[0] >= '0' && number[0] <= '9';
+// kUnknown if it is none.
+StepKind KindOfMark(std::string_view line) {
+  const Mark* mark = MarkOf(line);
+  switch (mark == nullptr ? MarkKind::kNoType : mark->kind) {
+    case MarkKind::kWipeBegins:
+    case MarkKind::kWipeEnds:
+      return StepKind::kWipeMark;
+    case MarkKind::kLayer:
+      return StepKind::kLayerMark;
+    case MarkKind::kStays:
+      return StepKind::kStay;
+    default:
+      return LabelOf(line).kind != LabelKind::kNone ? StepKind::kLabel : StepKind::kUnknown;
   }
-  static constexpr std::string_view kMarks[] = {"; CHANGE_LAYER", ";layer:", "; BEGIN_LAYER_OBJECT",
-                                                "; <layer>", ";; --- layer "};
-  for (const std::string_view mark : kMarks) {
-    if (StartsWith(comment, mark)) return true;
-  }
-  constexpr std::string_view kLayer = ";LAYER";
-  if (!StartsWith(comment, kLayer)) return false;
-  const std::string_view rest = comment.substr(kLayer.size());
-  return StartsWith(rest, "_CHANGE") || StartsWith(rest, ":") || StartsWith(rest, " ");
 }
 
 StepKind KindOfComment(std::string_view comment, SlotMask& slots) {
   slots = CommentSlots(comment);
   if (slots != 0) return StepKind::kSlot;
-  if (IsWipeMark(comment)) return StepKind::kWipeMark;
-  if (IsLayerMark(comment)) return StepKind::kLayerMark;
-  if (IsProgressComment(comment)) return StepKind::kProgress;
-  return LabelOf(comment).kind != LabelKind::kNone ? StepKind::kLabel : StepKind::kComment;
-}
-
-// Macros of Klipper that move nothing, or lead the head away for a picture and back to where it
-// was.
-bool IsHarmlessMacro(std::string_view line) {
-  static constexpr std::string_view kMacros[] = {"TIMELAPSE_TAKE_FRAME", "SET_PRINT_STATS_INFO",
-                                                 "TIMELAPSE_RENDER", "M622.1"};
-  const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
-  return std::find(std::begin(kMacros), std::end(kMacros), name) != std::end(kMacros);
+  const StepKind kind = KindOfMark(comment);
+  if (kind != StepKind::kUnknown) return kind;
+  return IsProgressComment(comment) ? StepKind::kProgress : StepKind::kComment;
 }
 
 StepKind KindOfText(std::string_view line, SlotMask& slots) {
   slots = TextSlots(line);
   if (slots != 0) return StepKind::kSlot;
-  if (LabelOf(line).kind != LabelKind::kNone) return StepKind::kLabel;
-  if (IsProgressMacro(line)) return StepKind::kProgress;
-  return IsHarmlessMacro(line) ? StepKind::kStay : StepKind::kUnknown;
+  return IsProgressMacro(line) ? StepKind::kProgress : KindOfMark(line);
 }
 
 // Bambu's: a picture (971, 9711), a shutter (1004), notes for the display and the host (991, 1002).
@@ -112,7 +91,9 @@ bool Interpreter::Next(Step& step) {
       break;
     case LineKind::kComment:
       step.kind = KindOfComment(step.command.comment, step.slots);
-      if (step.kind == StepKind::kWipeMark) state_.in_wipe = BeginsWipe(step.command.comment);
+      if (step.kind == StepKind::kWipeMark) {
+        state_.in_wipe = MarkOf(step.command.comment)->kind == MarkKind::kWipeBegins;
+      }
       if (step.kind == StepKind::kLayerMark) state_.in_wipe = false;
       break;
     case LineKind::kText:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "client/gcode/dialect/dialect.h"
 #include "client/gcode/text/cura_settings.h"
 #include "client/gcode/text/text.h"
 
@@ -13,9 +14,9 @@ namespace {
 // Configurations are some 20 KiB; OrcaSlicer's with its embedded scripts 100 KiB.
 constexpr size_t kScanBytes = size_t{256} << 10;
 
-using Setting = std::function<void(std::string_view key, std::string_view value)>;
+using SettingLine = std::function<void(std::string_view key, std::string_view value)>;
 
-void ForEachSetting(std::string_view part, const Setting& setting) {
+void ForEachSetting(std::string_view part, const SettingLine& setting) {
   for (size_t begin = 0; begin < part.size();) {
     const size_t end = std::min(part.find('\n', begin), part.size());
     const std::string_view line = part.substr(begin, end - begin);
@@ -45,11 +46,6 @@ void SetLength(std::optional<double>& field, std::optional<double> value) {
   if (value && *value > 0 && *value <= kMostMm) field = value;
 }
 
-// CuraEngine's outline of the head around the nozzle, fans and all, and how high its lowest part
-// hangs above the tip.
-constexpr std::string_view kCuraHead = "machine_head_with_fans_polygon";
-constexpr std::string_view kCuraHeadDistance = "machine_nozzle_head_distance";
-
 // How far from the nozzle the farthest corner of `[[-20, 10], [10, 10], [10, -10]]` is.
 std::optional<double> ReachOf(std::string_view polygon) {
   constexpr std::string_view kOfNumber = "+-.0123456789";
@@ -66,45 +62,53 @@ std::optional<double> ReachOf(std::string_view polygon) {
   return reach;
 }
 
-void Apply(std::string_view key, std::string_view value, MachineProfile& profile) {
+void Apply(Setting setting, std::string_view value, MachineProfile& profile) {
   const std::optional<double> number = FirstNumber(value);
-  if (key == "machine_max_acceleration_extruding") {
-    SetPositive(profile.print_accel, number);
-  } else if (key == "machine_max_acceleration_travel") {
-    SetPositive(profile.travel_accel, number);
-  } else if (key == "machine_max_acceleration_retracting") {
-    SetPositive(profile.retract_accel, number);
-  } else if (key == "machine_max_acceleration_z") {
-    SetPositive(profile.z_accel, number);
-  } else if (key == "machine_max_feedrate_z" || key == "machine_max_speed_z") {
-    SetPositive(profile.max_z_speed, number);
-  } else if (key == "machine_max_feedrate_e" || key == "machine_max_speed_e") {
-    SetPositive(profile.max_e_speed, number);
-  } else if (key == "retract_length" || key == "retraction_length") {
-    SetPositive(profile.firmware_retract_length, number);
-  } else if (key == "retract_speed" || key == "retraction_speed") {
-    SetPositive(profile.firmware_retract_speed, number);
-    profile.firmware_prime_speed = profile.firmware_retract_speed;
-  } else if (key == "retract_before_travel" || key == "retraction_minimum_travel") {
-    profile.retract_before_travel = number;
-  } else if (key == "only_retract_when_crossing_perimeters" || key == "reduce_infill_retraction") {
-    profile.only_retract_when_crossing = value == "1";
-  } else if (key == "avoid_crossing_perimeters" || key == "reduce_crossing_wall") {
-    profile.avoid_crossing = value == "1";
-  } else if (key == "top_fill_pattern" || key == "top_surface_pattern") {
-    profile.top_fill_pattern = std::string(value);
-  } else if (key == "bottom_fill_pattern" || key == "bottom_surface_pattern") {
-    profile.monotonic_bottom = StartsWith(value, "monotonic");
-  } else if (key == "nozzle_diameter") {
-    profile.nozzle_diameter = number;
-  } else if (key == "extruder_clearance_radius" || key == "extruder_clearance_max_radius") {
-    SetLength(profile.clearance_radius, number);
-  } else if (key == "nozzle_height" || key == kCuraHeadDistance) {
-    SetLength(profile.nozzle_height, number);
-  } else if (key == kCuraHead) {
-    SetLength(profile.clearance_radius, ReachOf(value));
-  } else if (key == "filament_diameter") {
-    SetPositive(profile.filament_diameter, number);
+  switch (setting) {
+    case Setting::kPrintAccel:
+      return SetPositive(profile.print_accel, number);
+    case Setting::kTravelAccel:
+      return SetPositive(profile.travel_accel, number);
+    case Setting::kRetractAccel:
+      return SetPositive(profile.retract_accel, number);
+    case Setting::kZAccel:
+      return SetPositive(profile.z_accel, number);
+    case Setting::kMaxZSpeed:
+      return SetPositive(profile.max_z_speed, number);
+    case Setting::kMaxESpeed:
+      return SetPositive(profile.max_e_speed, number);
+    case Setting::kRetractLength:
+      return SetPositive(profile.firmware_retract_length, number);
+    case Setting::kRetractSpeed:
+      SetPositive(profile.firmware_retract_speed, number);
+      profile.firmware_prime_speed = profile.firmware_retract_speed;
+      return;
+    case Setting::kRetractBeforeTravel:
+      profile.retract_before_travel = number;
+      return;
+    case Setting::kOnlyRetractWhenCrossing:
+      profile.only_retract_when_crossing = value == "1";
+      return;
+    case Setting::kAvoidCrossing:
+      profile.avoid_crossing = value == "1";
+      return;
+    case Setting::kTopFillPattern:
+      profile.top_fill_pattern = std::string(value);
+      return;
+    case Setting::kBottomFillPattern:
+      profile.monotonic_bottom = StartsWith(value, "monotonic");
+      return;
+    case Setting::kNozzleDiameter:
+      profile.nozzle_diameter = number;
+      return;
+    case Setting::kClearanceRadius:
+      return SetLength(profile.clearance_radius, number);
+    case Setting::kHeadPolygon:
+      return SetLength(profile.clearance_radius, ReachOf(value));
+    case Setting::kNozzleHeight:
+      return SetLength(profile.nozzle_height, number);
+    case Setting::kFilamentDiameter:
+      return SetPositive(profile.filament_diameter, number);
   }
 }
 
@@ -115,15 +119,14 @@ std::optional<double> Parameter(std::string_view line, std::string_view name) {
   return FirstNumber(line.substr(at + name.size()));
 }
 
-// Of the head alone: CuraEngine's other settings are none of a file that others have.
-void ApplyCuraHead(const std::string& joined, MachineProfile& profile) {
-  for (const std::string_view key : {kCuraHead, kCuraHeadDistance}) {
-    const size_t at = joined.find(key);
+// CuraEngine's, in the joined text of all its settings.
+void ApplyCura(const std::string& joined, MachineProfile& profile) {
+  for (const SettingWord& word : kCura.settings) {
+    const size_t at = joined.find(word.key);
     if (at == joined.npos) continue;
-    const std::string_view rest = std::string_view(joined).substr(at + key.size());
+    const std::string_view rest = std::string_view(joined).substr(at + word.key.size());
     const std::string_view line = rest.substr(0, rest.find('\\'));
-    const size_t equals = line.find(" = ");
-    if (equals == 0) Apply(key, line.substr(3), profile);
+    if (StartsWith(line, " = ")) Apply(word.setting, line.substr(3), profile);
   }
 }
 
@@ -131,14 +134,14 @@ void ApplyCuraHead(const std::string& joined, MachineProfile& profile) {
 
 MachineProfile ReadProfile(std::string_view text) {
   MachineProfile profile;
-  const Setting apply = [&profile](std::string_view key, std::string_view value) {
-    Apply(key, value, profile);
+  const SettingLine apply = [&profile](std::string_view key, std::string_view value) {
+    if (const std::optional<Setting> setting = SettingOf(key)) Apply(*setting, value, profile);
   };
   ForEachSetting(text.substr(0, kScanBytes), apply);
   if (text.size() > kScanBytes) {
     ForEachSetting(text.substr(std::max(kScanBytes, text.size() - kScanBytes)), apply);
   }
-  ApplyCuraHead(JoinedCuraSettings(text), profile);
+  ApplyCura(JoinedCuraSettings(text), profile);
   return profile;
 }
 

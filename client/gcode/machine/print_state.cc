@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 
+#include "client/gcode/dialect/dialect.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -42,58 +42,24 @@ SlotMask OnlyWord(Command& command, char letter, Slot slot) {
   return SlotBit(slot);
 }
 
-// Simplify3D and FlashPrint name features in comments of their own.
-bool IsBareType(std::string_view comment) {
-  static constexpr std::string_view kNames[] = {"outer perimeter",
-                                                "inner perimeter",
-                                                "single extrusion",
-                                                "gap fill",
-                                                "infill",
-                                                "solid layer",
-                                                "support",
-                                                "dense support",
-                                                "raft",
-                                                "skirt",
-                                                "bridge",
-                                                "prime pillar",
-                                                "ooze shield",
-                                                "outer shell",
-                                                "inner shell",
-                                                "internal shell",
-                                                "shell"};
-  constexpr std::string_view kFeatureMark = "feature ";
-  const std::string_view name = TrimBlanks(comment.substr(1));
-  if (StartsWith(name, kFeatureMark)) return true;
-  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
-}
-
-// KISSlicer: `; 'Loop Path', 0.2 [feed mm/s], 5.2 [head mm/s]`; travel between paths has such lines
-// too.
-bool IsQuotedType(std::string_view comment) {
-  if (!StartsWith(comment, "; '") || comment.find(" Path',") == std::string_view::npos)
-    return false;
-  return !StartsWith(comment, "; 'Travel") && !StartsWith(comment, "; 'Destring") &&
-         !StartsWith(comment, "; 'Wipe");
-}
-
 }  // namespace
 
 SlotMask CommentSlots(std::string_view comment) {
-  struct Prefix {
-    std::string_view text;
-    Slot slot;
-  };
-  static constexpr Prefix kPrefixes[] = {
-      {";TYPE:", kSlotType},     {";WIDTH:", kSlotWidth},       {";HEIGHT:", kSlotHeight},
-      {"; FEATURE:", kSlotType}, {"; LINE_WIDTH:", kSlotWidth}, {"; LAYER_HEIGHT:", kSlotHeight},
-  };
-  for (const Prefix& prefix : kPrefixes) {
-    if (StartsWith(comment, prefix.text)) return SlotBit(prefix.slot);
+  const Mark* mark = MarkOf(comment);
+  switch (mark == nullptr ? MarkKind::kQuotedType : mark->kind) {
+    case MarkKind::kType:
+      return SlotBit(kSlotType);
+    case MarkKind::kQuotedType:
+      return TypeIn(comment).empty() ? 0 : SlotBit(kSlotType);
+    case MarkKind::kWidth:
+      return SlotBit(kSlotWidth);
+    case MarkKind::kHeight:
+      return SlotBit(kSlotHeight);
+    case MarkKind::kWidthAndHeight:
+      return SlotBit(kSlotWidth) | SlotBit(kSlotHeight);
+    default:
+      return 0;
   }
-  if (IsBareType(comment) || IsQuotedType(comment)) return SlotBit(kSlotType);
-  // Simplify3D: `; tool H0.300 W0.480`
-  if (StartsWith(comment, "; tool H")) return SlotBit(kSlotWidth) | SlotBit(kSlotHeight);
-  return 0;
 }
 
 SlotMask CommandSlots(Command& command) {

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/gcode/dialect/dialect.h"
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/machine/machine_profile.h"
 #include "client/gcode/machine/print_state.h"
@@ -28,8 +29,6 @@
 
 namespace traverse {
 namespace gcode {
-
-enum class Dialect : uint8_t { kOther, kPrusa, kSlic3r, kCura };
 
 // The parts of a link.
 enum LinkFlag : uint16_t {
@@ -104,8 +103,7 @@ struct GcodeFile {
   std::string text;  // without the numbers of its lines
   std::optional<gcode::LineNumbers> numbers;
   bool states_digest = false;  // of the text with its numbers: text/digest_line.h
-  gcode::Dialect dialect = gcode::Dialect::kOther;
-  std::string slicer;  // as the file names it, "PrusaSlicer 2.5.0"; empty if it does not
+  gcode::Slicer slicer;
 
   std::vector<gcode::Block> blocks;
   std::vector<gcode::Layer> layers;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/ironing.h"
 #include "client/gcode/model/segment_grid.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/gcode/machine/vertex.h"
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {

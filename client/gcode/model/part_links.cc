@@ -1,6 +1,6 @@
 #include "client/gcode/model/part_links.h"
 
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 
 namespace traverse::gcode {
 namespace {

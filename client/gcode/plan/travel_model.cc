@@ -196,7 +196,7 @@ double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& m
   state.e = before.e_out;
   state.feed = before.feed_out;
   Interpreter interpreter(file.LinkText(block), 0, state);
-  bool departs = file.dialect != Dialect::kCura && (file.blocks[block].link & kLinkDeparts) != 0;
+  bool departs = !file.slicer.combs && (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();

@@ -124,7 +124,7 @@ std::vector<size_t> SampledLayers(const GcodeFile& file) {
 // visible wall has bends. Wipes and inward moves look like bends, but CuraEngine makes neither.
 bool AvoidsWalls(const GcodeFile& file) {
   if (file.profile.avoid_crossing) return *file.profile.avoid_crossing;
-  if (file.dialect != Dialect::kCura) return false;
+  if (!file.slicer.combs) return false;
   int64_t crossing = 0;
   int64_t bent = 0;
   for (const size_t i : SampledLayers(file)) {

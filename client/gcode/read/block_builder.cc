@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "client/gcode/machine/label.h"
+#include "client/gcode/dialect/label.h"
 #include "client/gcode/model/arc.h"
 #include "client/gcode/text/text.h"
 

@@ -101,8 +101,9 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
     job->options.mutable_strategy()->set_name(strategy);
   }
   const GcodeFile& file = *job->gcode;
-  run.slicer =
-      file.slicer.empty() ? "unknown" : file.slicer.substr(0, file.slicer.find_first_of(" _"));
+  run.slicer = file.slicer.name.empty()
+                   ? "unknown"
+                   : file.slicer.name.substr(0, file.slicer.name.find_first_of(" _"));
   std::vector<gcode::FileOrder> tries;
   std::vector<v1::LayerResult> found;
   for (const bool narrow : {false, true}) {

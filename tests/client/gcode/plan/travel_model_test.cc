@@ -46,7 +46,7 @@ TEST(TravelSeconds, AreWithoutTheShortMoveInwards) {
   ASSERT_NE(file->blocks[1].link & kLinkDeparts, 0);
 
   EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
-  file->dialect = Dialect::kCura;
+  file->slicer.combs = true;
   EXPECT_GT(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
 }
 

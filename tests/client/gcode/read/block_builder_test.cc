@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 #include "tests/client/gcode/read/block_text.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"

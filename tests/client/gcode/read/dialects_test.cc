@@ -91,7 +91,7 @@ TEST_P(DialectFile, IsKnownByNameWithItsFeatures) {
   std::set<Feature> expected = GetParam().features;
   expected.erase(Feature::kLine);
 
-  EXPECT_EQ(file_->slicer, GetParam().slicer);
+  EXPECT_EQ(file_->slicer.name, GetParam().slicer);
   EXPECT_THAT(features, UnorderedElementsAreArray(expected));
 }
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/verify/verifier.h"
@@ -24,15 +24,15 @@ enum class Effect {
   kFixesPath,  // none passes it, and the path before it stays
 };
 
-struct Mark {
+struct MarkCase {
   const char* slicer;
   const char* lines;
   Effect effect;
 };
 
-void PrintTo(const Mark& mark, std::ostream* out) { *out << mark.slicer << ": " << mark.lines; }
+void PrintTo(const MarkCase& mark, std::ostream* out) { *out << mark.slicer << ": " << mark.lines; }
 
-constexpr Mark kMarks[] = {
+constexpr MarkCase kMarks[] = {
     {"PrusaSlicer", ";TYPE:Internal infill", Effect::kNone},
     {"PrusaSlicer", ";WIDTH:0.5", Effect::kNone},
     {"PrusaSlicer", ";HEIGHT:0.25", Effect::kNone},
@@ -118,7 +118,7 @@ std::string WithMark(const std::string& mark) {
   return text + "M107\n";
 }
 
-class MarkOfSlicer : public ::testing::TestWithParam<Mark> {};
+class MarkOfSlicer : public ::testing::TestWithParam<MarkCase> {};
 
 TEST_P(MarkOfSlicer, LetsPathsPassOrNot) {
   const Effect effect = GetParam().effect;

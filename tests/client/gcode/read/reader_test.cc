@@ -8,7 +8,7 @@
 #include <string>
 
 #include "client/gcode/measure/layer_meter.h"
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/read/block_text.h"
@@ -30,8 +30,7 @@ std::string Fault(const std::string& text) {
 TEST(ReadGcode, FindsThePathsOfPrusaSlicer) {
   const auto file = Read(testing::kPrusaSample);
 
-  EXPECT_EQ(file->slicer, "PrusaSlicer 2.5.0");
-  EXPECT_EQ(file->dialect, Dialect::kPrusa);
+  EXPECT_EQ(file->slicer.name, "PrusaSlicer 2.5.0");
   ASSERT_EQ(file->layers.size(), 1u);
   ASSERT_EQ(file->blocks.size(), 3u);
   EXPECT_EQ(TextOf(*file, file->blocks[2]), "G1 X30 Y31 E.4\n");
@@ -98,7 +97,7 @@ TEST(ReadGcode, LineEndsDoNotMatter) {
 
   ASSERT_EQ(dos_file->blocks.size(), unix_file->blocks.size());
   EXPECT_EQ(Sum(MeasureLayers(*dos_file)).travel_mm, Sum(MeasureLayers(*unix_file, 2)).travel_mm);
-  EXPECT_EQ(dos_file->slicer, unix_file->slicer);
+  EXPECT_EQ(dos_file->slicer.name, unix_file->slicer.name);
 }
 
 TEST(ReadGcode, NamesThePlaceOfAFault) {

@@ -1,8 +1,8 @@
 // Lines that say of which object the next paths are, as slicers, printers and hosts know them: a
 // printer may be told to leave an object out, with everything between its labels.
 
-#ifndef TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_
-#define TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_
+#ifndef TRAVERSE_CLIENT_GCODE_DIALECT_LABEL_H_
+#define TRAVERSE_CLIENT_GCODE_DIALECT_LABEL_H_
 
 #include <cstdint>
 #include <string_view>
@@ -22,12 +22,10 @@ struct Label {
   bool named = false;         // it names an object
 };
 
-// PrusaSlicer: `; printing object`; OrcaSlicer, Bambu Studio: `; start printing object`, M624, M625
-// and `; OBJECT_ID:`; Klipper: EXCLUDE_OBJECT_START; Marlin, RepRapFirmware: M486; CuraEngine:
-// `;MESH:`; ideaMaker: `;PRINTING:`; KISSlicer, IceSL: the end of their layers; OctoPrint:
-// `@OBJECT`, `@EXCLUDEREGION`. `line` has no blanks around it.
+// By the marks of the dialects; besides Marlin's and RepRapFirmware's M486, and what OctoPrint's
+// plugins read: `@OBJECT`, `@EXCLUDEREGION`. `line` has no blanks around it.
 Label LabelOf(std::string_view line);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_
+#endif  // TRAVERSE_CLIENT_GCODE_DIALECT_LABEL_H_
