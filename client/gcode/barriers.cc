@@ -11,7 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/substitute.h"
 #include "client/gcode/choose/object_orders.h"
-#include "client/gcode/dialect/label.h"
+#include "client/gcode/dialects/label.h"
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/layer_plan.h"

@@ -8,7 +8,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/text/digest_line.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client/gcode/dialect/label.h"
+#include "client/gcode/dialects/label.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/gcode/dialect/dialect.h"
-#include "client/gcode/dialect/label.h"
+#include "client/gcode/dialects/dialect.h"
+#include "client/gcode/dialects/label.h"
 #include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/text.h"
 

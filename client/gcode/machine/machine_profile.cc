@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/text/cura_settings.h"
 #include "client/gcode/text/text.h"
 

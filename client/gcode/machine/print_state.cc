@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 
 namespace traverse::gcode {
 namespace {

@@ -3,7 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_BLOCK_FEATURE_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_BLOCK_FEATURE_H_
 
-#include "client/gcode/dialect/feature.h"
+#include "client/gcode/dialects/feature.h"
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/machine/machine_profile.h"
 #include "client/gcode/machine/print_state.h"

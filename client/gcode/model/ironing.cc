@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/model/segment_grid.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -19,10 +19,9 @@ constexpr double kLeastFilled = 0.6;
 // Segments looked at for each of a layer: far more than a printable layer needs.
 constexpr size_t kLooksPerLine = 250;
 
-// What CuraEngine calls skin.
-bool IsCuraSkin(const GcodeFile& file, const Block& block) {
+bool IsSkinOrIroning(const GcodeFile& file, const Block& block) {
   const uint32_t setter = file.states[block.state_in][kSlotType];
-  return setter != 0 && StartsWith(file.setters.Line(setter), ";TYPE:SKIN");
+  return setter != 0 && MayBeIroning(TypeIn(file.setters.Line(setter)));
 }
 
 double FilamentMm(const GcodeFile& file, const Block& block) {
@@ -41,7 +40,7 @@ double UsualFlow(const GcodeFile& file, const Layer& layer, const std::vector<Ou
   double filament = 0;
   for (size_t path = 0; path < outlines.size(); ++path) {
     const Block& block = file.blocks[layer.first_block + path];
-    if (!IsWall(outlines[path].feature) && !IsCuraSkin(file, block)) continue;
+    if (!IsWall(outlines[path].feature) && !IsSkinOrIroning(file, block)) continue;
     flows.emplace_back(FlowOf(file, block), FilamentMm(file, block));
     filament += flows.back().second;
   }
@@ -138,7 +137,7 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
   double usual = -1;
   for (uint32_t path = 0; path < outlines.size(); ++path) {
     const Block& block = file.blocks[layer.first_block + path];
-    if (!IsCuraSkin(file, block)) continue;
+    if (!IsSkinOrIroning(file, block)) continue;
     if (usual < 0) usual = UsualFlow(file, layer, outlines);
     if (FlowOf(file, block) >= kLeastFilled * usual) continue;
     thin.push_back(path);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/path_body.h"
 #include "client/gcode/text/text.h"
@@ -22,7 +23,7 @@ std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot
   if (setter == 0) return std::nullopt;
   const std::string_view line = file.setters.Line(setter);
   std::string_view number = TrimBlanks(line.substr(line.find(':') + 1));
-  if (StartsWith(line, "; tool H")) {  // `; tool H0.300 W0.480`
+  if (const Mark* mark = MarkOf(line); mark && mark->kind == MarkKind::kWidthAndHeight) {
     const size_t at = line.find(slot == kSlotWidth ? 'W' : 'H');
     number = at == std::string_view::npos ? std::string_view{} : line.substr(at + 1);
   }

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "client/gcode/dialect/label.h"
+#include "client/gcode/dialects/label.h"
 #include "client/gcode/model/arc.h"
 #include "client/gcode/text/text.h"
 

@@ -1,4 +1,4 @@
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 
 #include <algorithm>
 #include <iterator>
@@ -24,11 +24,23 @@ bool Is(const Mark& mark, std::string_view line) {
   return Ends(mark.begins, rest);
 }
 
-Feature Find(std::span<const FeatureWord> features, std::string_view word) {
-  for (const FeatureWord& known : features) {
-    if (known.word == word) return known.feature;
+const FeatureWord* Find(std::span<const FeatureWord> features, std::string_view word) {
+  const auto known = std::find_if(features.begin(), features.end(),
+                                  [word](const FeatureWord& known) { return known.word == word; });
+  return known == features.end() ? nullptr : &*known;
+}
+
+// In the first table that has it; null if none has.
+const FeatureWord* FindInAll(std::span<const FeatureWord> Dialect::*features,
+                             std::string_view word) {
+  for (const Dialect* dialect : kAll) {
+    if (const FeatureWord* known = Find(dialect->*features, TrimBlanks(word))) return known;
   }
-  return Feature::kCount;
+  return nullptr;
+}
+
+Feature MeaningOf(const FeatureWord* known) {
+  return known == nullptr ? Feature::kCount : known->feature;
 }
 
 // `; outer perimeter`
@@ -36,7 +48,7 @@ std::string_view BareType(std::string_view comment) {
   if (!StartsWith(comment, ";")) return {};
   const std::string_view word = TrimBlanks(comment.substr(1));
   const bool known = std::any_of(std::begin(kAll), std::end(kAll), [word](const Dialect* dialect) {
-    return dialect->bare_types && Find(dialect->features, word) != Feature::kCount;
+    return dialect->bare_types && Find(dialect->features, word) != nullptr;
   });
   return known ? word : std::string_view();
 }
@@ -88,21 +100,16 @@ std::string_view TypeIn(std::string_view line) {
 }
 
 Feature FeatureOfType(std::string_view type) {
-  type = TrimBlanks(type);
-  for (const Dialect* dialect : kAll) {
-    const Feature feature = Find(dialect->features, type);
-    if (feature != Feature::kCount) return feature;
-  }
-  return Feature::kCount;
+  return MeaningOf(FindInAll(&Dialect::features, type));
+}
+
+bool MayBeIroning(std::string_view type) {
+  const FeatureWord* known = FindInAll(&Dialect::features, type);
+  return known != nullptr && known->or_ironing;
 }
 
 Feature FeatureOfMove(std::string_view comment) {
-  comment = TrimBlanks(comment);
-  for (const Dialect* dialect : kAll) {
-    const Feature feature = Find(dialect->move_features, comment);
-    if (feature != Feature::kCount) return feature;
-  }
-  return Feature::kCount;
+  return MeaningOf(FindInAll(&Dialect::move_features, comment));
 }
 
 std::optional<Setting> SettingOf(std::string_view key) {

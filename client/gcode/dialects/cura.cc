@@ -1,4 +1,4 @@
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 
 namespace traverse::gcode {
 namespace {
@@ -17,7 +17,7 @@ constexpr Mark kMarks[] = {
 constexpr FeatureWord kFeatures[] = {
     {"WALL-OUTER", Feature::kOuterWall},
     {"WALL-INNER", Feature::kInnerWall},
-    {"SKIN", Feature::kSolidInfill},
+    {"SKIN", Feature::kSolidInfill, /*or_ironing=*/true},
     {"FILL", Feature::kSparseInfill},
     {"SKIRT", Feature::kSkirt},
     {"SUPPORT", Feature::kSupport},

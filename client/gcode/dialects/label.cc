@@ -1,9 +1,9 @@
-#include "client/gcode/dialect/label.h"
+#include "client/gcode/dialects/label.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {

@@ -1,4 +1,4 @@
-#include "client/gcode/dialect/dialect.h"
+#include "client/gcode/dialects/dialect.h"
 
 namespace traverse::gcode {
 namespace {

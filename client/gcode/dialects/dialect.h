@@ -3,8 +3,8 @@
 //
 // The verifier has words of its own (verify/), so that no word can be wrong in both alike.
 
-#ifndef TRAVERSE_CLIENT_GCODE_DIALECT_DIALECT_H_
-#define TRAVERSE_CLIENT_GCODE_DIALECT_DIALECT_H_
+#ifndef TRAVERSE_CLIENT_GCODE_DIALECTS_DIALECT_H_
+#define TRAVERSE_CLIENT_GCODE_DIALECTS_DIALECT_H_
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "client/gcode/dialect/feature.h"
+#include "client/gcode/dialects/feature.h"
 
 namespace traverse::gcode {
 
@@ -50,6 +50,7 @@ struct Head {
 struct FeatureWord {
   std::string_view word;
   Feature feature;
+  bool or_ironing = false;  // which has no word of its own
 };
 
 // What settings say that are stated in the file, in the units of MachineProfile.
@@ -120,6 +121,9 @@ std::string_view TypeIn(std::string_view line);
 // The feature of that name, with blanks around it or not; kCount if nobody calls one so.
 Feature FeatureOfType(std::string_view type);
 
+// Ironing may have that name, too.
+bool MayBeIroning(std::string_view type);
+
 // The feature that the comment on a move names; kCount if it names none.
 Feature FeatureOfMove(std::string_view comment);
 
@@ -139,4 +143,4 @@ Slicer SlicerOf(std::string_view head);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_DIALECT_DIALECT_H_
+#endif  // TRAVERSE_CLIENT_GCODE_DIALECTS_DIALECT_H_

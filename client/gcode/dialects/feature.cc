@@ -1,4 +1,4 @@
-#include "client/gcode/dialect/feature.h"
+#include "client/gcode/dialects/feature.h"
 
 #include <cstddef>
 
