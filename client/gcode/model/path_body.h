@@ -28,9 +28,11 @@ struct PathBody {
   std::vector<BodySegment> segments;
   std::vector<PrintState> states;
 
-  // The moves after the last segment that extrude nothing, as one: where it leads.
+  // The moves after the last segment that extrude nothing, as one: where it leads, and how far
+  // they go.
   bool has_tail = false;
   Position tail_end;
+  double tail_length = 0;
 };
 
 PathBody ReadBody(const GcodeFile& file, const Block& block);

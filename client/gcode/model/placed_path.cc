@@ -83,7 +83,6 @@ void PlacedPath::PlaceGiven() {
 
 void PlacedPath::PlaceReversed() {
   std::vector<BodySegment>& segments = body_.segments;
-  const double tail = body_.has_tail ? LengthXy(segments.back().to, body_.tail_end) : 0;
   std::reverse(segments.begin(), segments.end());
   for (BodySegment& segment : segments) segment = Reversed(segment);
   first_ = segments.front().from;
@@ -91,7 +90,7 @@ void PlacedPath::PlaceReversed() {
   if (!body_.has_tail) return;
   // As long a tail as the path's own, straight on beyond its new end.
   const BodySegment& end = segments.back();
-  body_.tail_end = Along(end.from, end.to, LengthXy(end.from, end.to) + tail);
+  body_.tail_end = Along(end.from, end.to, LengthXy(end.from, end.to) + body_.tail_length);
   last_.x = body_.tail_end.x;
   last_.y = body_.tail_end.y;
 }

@@ -105,5 +105,15 @@ TEST(PlacedPath, TheRetraceFollowsAnArc) {
   }
 }
 
+// Coasting round a corner goes as far as its moves are long, not as far as it leads.
+TEST(PlacedPath, ATailIsAsLongStraightOnAsItsMovesAre) {
+  const std::shared_ptr<GcodeFile> file = *ReadGcode(
+      "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\nG1 X0 Y0\nG1 F1800\nG1 X9 Y0 E.3\nG1 X9.1 Y0\n"
+      "G1 X9.1 Y.1\nG1 E-1 F2100\n",
+      "coasting.gcode");
+  const PlacedPath turned(*file, {0, 1, false});
+  EXPECT_NEAR(ToDouble(turned.last().x), -0.2, 1e-6);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
