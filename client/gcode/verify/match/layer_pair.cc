@@ -14,11 +14,10 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kCellMm = 1.0;
-constexpr double kEndSlackMm = 0.25;  // of travel, where it may touch the walls that it joins
-constexpr double kOnPathMm = 0.05;    // a tail lies this near to its path
-constexpr double kLongestStraightMm = 1.0;
-constexpr double kStraightCosine = 0.996;  // of 5 degrees
-constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
+constexpr double kEndSlackMm = 0.25;    // of travel, where it may touch the walls that it joins
+constexpr double kOnPathMm = 0.05;      // a tail lies this near to its path
+constexpr double kLongestTailMm = 1.0;  // of one that leaves its path
+constexpr double kWallsApartMm = 0.9;   // walls of one outline lie no farther apart
 
 // The value of `; NAME = VALUE` in `text`.
 std::string_view Setting(std::string_view text, std::string_view name) {
@@ -37,12 +36,30 @@ double FlowOf(const TracePath& path) {
 }
 
 bool GoesStraightOn(const TraceMove& move, const Piece& last) {
-  const double length = move.length_mm();
   const double before = DistanceOf(last.a, last.b);
-  if (move.arc || length > kLongestStraightMm || length <= 0 || before <= 0) return false;
-  const double dot = (move.to.x - move.from.x) * (last.b.x - last.a.x) +
-                     (move.to.y - move.from.y) * (last.b.y - last.a.y);
-  return dot >= kStraightCosine * length * before;
+  if (before <= 0) return false;
+  const double reach = kLongestTailMm / before;
+  const Point on{last.b.x + (last.b.x - last.a.x) * reach,
+                 last.b.y + (last.b.y - last.a.y) * reach};
+  return DistanceToPiece(move.to, last.b, on) <= kOnPathMm;
+}
+
+// The end of the moves of `link` that coast: no faster than the path before, which ended with
+// `last`, they go straight on from there. Slicers coast round corners, too; but what leads farther,
+// or to the next path, is travel behind the first of them.
+uint32_t CoastingEnd(const TraceChunk& chunk, const TraceLink& link, Micro feed,
+                     const Piece& last) {
+  double length = 0;
+  uint32_t m = link.first_move;
+  for (; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    const bool slow = move.kind == MoveKind::kTravel && move.open && move.feed <= feed;
+    if (!slow || move.arc || move.z_to_mm != move.z_from_mm) break;
+    const double before = std::exchange(length, length + move.length_mm());
+    if (m == link.first_move && !GoesStraightOn(move, last)) return m;
+    if (length > kLongestTailMm) return link.first_move + (before > 0 ? 1 : 0);
+  }
+  return m == link.end_move ? std::min(m, link.first_move + 1) : m;
 }
 
 bool LiesOn(Point p, absl::Span<const Piece> pieces) {
@@ -259,6 +276,8 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
     }
     return LiesOn(p, pieces);
   };
+  const uint32_t coasting =
+      any_speed ? link.first_move : CoastingEnd(chunk, link, traced.feed, last);
   uint32_t m = link.first_move + (any_speed ? TailMoves(chunk, path, pieces) : 0);
   for (; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
@@ -266,9 +285,8 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
     if (move.kind != MoveKind::kTravel || !(move.open || any_speed)) break;
     if (move.feed > traced.feed && !any_speed) break;
     if (move.z_to_mm != move.z_from_mm) break;
-    const bool straight = m == link.first_move && !any_speed && GoesStraightOn(move, last);
     const bool along = lies_on(move.to, m) && lies_on(move.middle, m);
-    if (!straight && !along) break;
+    if (m >= coasting && !along) break;
   }
   return m - link.first_move;
 }

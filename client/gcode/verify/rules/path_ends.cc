@@ -19,6 +19,7 @@ constexpr double kLengthSlackMm = 0.011;
 
 struct Tail {
   double length_mm = 0;
+  Point begun;  // where the first of its moves leads
   Point end;
   uint32_t line = 0;
   Micro feed = 0;
@@ -36,17 +37,20 @@ Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     tail.end = move.to;
     tail.feed = move.feed;
     tail.known &= layer.IsKnown(move);
-    if (tail.line == 0) tail.line = move.line;
+    if (tail.line != 0) continue;
+    tail.line = move.line;
+    tail.begun = move.to;
   }
   return tail;
 }
 
-// Whether the tail goes on beyond the end of the path, not back along it.
+// Whether the tail begins beyond the end of the path, not back along it.
 bool GoesBeyond(const TraceChunk& chunk, uint32_t path, const Tail& tail) {
   const TracePath& traced = chunk.paths[path];
   const Point end = chunk.EndOf(traced);
   const Point before = chunk.StartOf(traced, traced.end_segment - 1);
-  return (tail.end.x - end.x) * (end.x - before.x) + (tail.end.y - end.y) * (end.y - before.y) > 0;
+  return (tail.begun.x - end.x) * (end.x - before.x) + (tail.begun.y - end.y) * (end.y - before.y) >
+         0;
 }
 
 // True if everything after the path leads to the next one: there is such travel between lines of a

@@ -59,6 +59,27 @@ TEST(VerifyPathEnds, TurnWithTheirPaths) {
   EXPECT_EQ(Broken(kHead + two, kHead + With(turned, "X-.04 Y5", "X.04 Y5")), "path_ends");
 }
 
+// It begins on the line, and goes on round the corner that the path would have had: as far, turned,
+// goes a straight one.
+TEST(VerifyPathEnds, CoastingMayGoRoundCorners) {
+  for (const std::string bent :
+       {"X9.03 Y0\nG1 X9.19 Y.03", "X9.1 Y0\nG1 X9.1 Y.1", "X9.1 Y0\nG1 X9 Y.03"}) {
+    const std::string two =
+        Line("Internal infill", "X0 Y5", "X9 Y5") + Tailed("X0 Y0", "X9 Y0", bent);
+    const auto turned = [&two](const std::string& on) {
+      return Broken(kHead + two, kHead + Line("Internal infill", "X0 Y5", "X9 Y5") +
+                                     Tailed("X9 Y0", "X0 Y0", on));
+    };
+    EXPECT_EQ(turned("X-.2 Y0"), "") << bent;
+    EXPECT_EQ(turned("X-.1 Y0"), "path_ends") << bent;
+    EXPECT_EQ(turned("X.2 Y0"), "path_ends") << bent;
+    EXPECT_EQ(Broken(kHead + two, kHead + With(two, bent, "X9.2 Y0")), "path_ends") << bent;
+    EXPECT_THAT(Broken(kHead + With(two, "G1 " + bent + "\n", ""), kHead + two),
+                HasSubstr("path_ends"))
+        << bent;
+  }
+}
+
 // The travel from line to line of a zigzag, of which nothing is left to print, lies along the line.
 TEST(VerifyPathEnds, AreNoTravelsToTheNextPath) {
   const std::string line = Line("Internal infill", "X0 Y0", "X9 Y0");
