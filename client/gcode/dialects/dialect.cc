@@ -1,7 +1,9 @@
 #include "client/gcode/dialects/dialect.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <vector>
 
 #include "client/gcode/text/text.h"
 
@@ -22,6 +24,22 @@ bool Is(const Mark& mark, std::string_view line) {
   const std::string_view rest = line.substr(mark.begins.size());
   if (mark.numbered && (rest.empty() || rest[0] < '0' || rest[0] > '9')) return false;
   return Ends(mark.begins, rest);
+}
+
+// Marks by the first character that tells them from others: readers ask of every comment.
+using MarkIndex = std::array<std::vector<const Mark*>, 256>;
+
+size_t PlaceOf(std::string_view line) {
+  const size_t at = StartsWith(line, "; ") ? 2 : 1;
+  return at < line.size() ? static_cast<unsigned char>(line[at]) : 0;
+}
+
+MarkIndex IndexMarks() {
+  MarkIndex index;
+  for (const Dialect* dialect : kAll) {
+    for (const Mark& mark : dialect->marks) index[PlaceOf(mark.begins)].push_back(&mark);
+  }
+  return index;
 }
 
 const FeatureWord* Find(std::span<const FeatureWord> features, std::string_view word) {
@@ -81,12 +99,11 @@ std::string NameIn(std::string_view line) {
 }  // namespace
 
 const Mark* MarkOf(std::string_view line) {
+  static const MarkIndex& index = *new MarkIndex(IndexMarks());
   const Mark* most = nullptr;
-  for (const Dialect* dialect : kAll) {
-    for (const Mark& mark : dialect->marks) {
-      const bool more = most == nullptr || most->begins.size() < mark.begins.size();
-      if (more && Is(mark, line)) most = &mark;
-    }
+  for (const Mark* mark : index[PlaceOf(line)]) {
+    const bool more = most == nullptr || most->begins.size() < mark->begins.size();
+    if (more && Is(*mark, line)) most = mark;
   }
   return most;
 }
