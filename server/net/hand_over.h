@@ -9,14 +9,13 @@
 #ifndef TRAVERSE_SERVER_NET_HAND_OVER_H_
 #define TRAVERSE_SERVER_NET_HAND_OVER_H_
 
-#include <deque>
 #include <functional>
-#include <map>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "engine/base/mutex.h"
+#include "server/net/turns.h"
 
 namespace traverse {
 
@@ -59,20 +58,13 @@ class HandOver {
     std::string peer;
   };
 
-  using Waiting = std::map<std::string, std::deque<NewConnection>>;
-
   void Run(int hand);
-  NewConnection TakeNext() TRAVERSE_REQUIRES(mutex_);
-  Waiting::iterator Longest() TRAVERSE_REQUIRES(mutex_);
-  std::string TurnAwayOf(Waiting::iterator address) TRAVERSE_REQUIRES(mutex_);
+  std::string TurnAwayLast() TRAVERSE_REQUIRES(mutex_);
 
   const Take take_;
   mutable Mutex mutex_;
   ConditionVariable changed_;
-  Waiting waiting_ TRAVERSE_GUARDED_BY(mutex_);  // by address; none is empty
-  std::deque<std::string> turns_
-      TRAVERSE_GUARDED_BY(mutex_);                // its addresses, in the order of their turns
-  size_t count_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of those that wait
+  Turns<NewConnection> waiting_ TRAVERSE_GUARDED_BY(mutex_);
   std::vector<std::string> in_hand_ TRAVERSE_GUARDED_BY(mutex_);  // [hand] a peer, or empty
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;

@@ -16,6 +16,7 @@
 #include "client/gateway/http/session.h"
 #include "server/net/give_way.h"
 #include "server/net/open_files.h"
+#include "server/net/turns.h"
 
 namespace traverse::gateway {
 namespace {
@@ -96,6 +97,7 @@ class BeastServer : public HttpServer {
       if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
       if (!error) acceptor_.bind(endpoint, error);
       if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
+      if (!error) acceptor_.non_blocking(true, error);
     }
     if (error) {
       return absl::UnavailableError(
@@ -109,20 +111,29 @@ class BeastServer : public HttpServer {
     net::steady_timer pause(*loop_);
     while (acceptor_.is_open()) {
       boost::system::error_code error;
-      tcp::socket socket =
-          co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
+      co_await acceptor_.async_wait(tcp::acceptor::wait_read,
+                                    net::redirect_error(net::use_awaitable, error));
       if (error == net::error::operation_aborted) co_return;
-      if (error) {  // no file descriptor is left, or the client has gone: others may come
-        if (error == net::error::no_descriptors) MakeRoom("");
-        pause.expires_after(std::chrono::milliseconds(50));
-        co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
-        continue;
-      }
-      Open(std::move(socket));
+      if (AcceptAll()) continue;
+      MakeRoom("");
+      pause.expires_after(std::chrono::milliseconds(50));
+      co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
     }
   }
 
-  void Open(tcp::socket socket) {
+  // Those that have come, as far as that takes only a moment. False: for want of files.
+  bool AcceptAll() {
+    constexpr int kAtOnce = 256;
+    boost::system::error_code error;
+    for (int i = 0; i < kAtOnce && !error; ++i) {
+      tcp::socket socket = acceptor_.accept(error);
+      if (!error) TakeIn(std::move(socket));
+    }
+    return !error || error == net::error::would_block;
+  }
+
+  // It waits for its turn from now on, unless it is refused.
+  void TakeIn(tcp::socket socket) {
     boost::system::error_code error;
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;
@@ -138,6 +149,17 @@ class BeastServer : public HttpServer {
       return Refuse(std::move(socket), "too many connections from this address");
     }
     socket.set_option(tcp::no_delay(true), error);
+    ++connections_;
+    ++addresses_[address];
+    waiting_.Add(address, {std::move(socket), address});
+    if (waiting_.size() == 1) net::post(*loop_, [this] { ServeNext(); });
+  }
+
+  // One each time the loop comes round: serving those of one address keeps no other waiting.
+  void ServeNext() {
+    auto [socket, address] = waiting_.TakeNext();
+    if (!waiting_.empty()) net::post(*loop_, [this] { ServeNext(); });
+    if (!acceptor_.is_open()) return Forget(address);
     beast::tcp_stream stream(std::move(socket));
     if (tls_ == nullptr) {
       Serve(std::make_shared<Session<beast::tcp_stream>>(loop_, std::move(stream), nullptr,
@@ -178,22 +200,31 @@ class BeastServer : public HttpServer {
 
   template <typename T>
   void Serve(std::shared_ptr<T> session, const std::string& address) {
-    ++connections_;
-    ++addresses_[address];
     sessions_.insert(session.get());
     net::co_spawn(*loop_, session->Run(), [this, session, address](const std::exception_ptr&) {
       sessions_.erase(session.get());
-      --connections_;
-      if (--addresses_[address] == 0) addresses_.erase(address);
+      Forget(address);
     });
   }
+
+  // A connection of `address` has ended.
+  void Forget(const std::string& address) {
+    --connections_;
+    if (--addresses_[address] == 0) addresses_.erase(address);
+  }
+
+  struct NewConnection {
+    tcp::socket socket;
+    std::string address;
+  };
 
   const HttpServerOptions options_;
   const HttpHandler handler_;
   std::unique_ptr<TlsContext> tls_;
   const std::shared_ptr<net::io_context> loop_;
   tcp::acceptor acceptor_;
-  std::set<AnySession*> sessions_;        // of the loop's thread
+  Turns<NewConnection> waiting_;          // of the loop's thread: not yet served
+  std::set<AnySession*> sessions_;        // likewise
   std::map<std::string, int> addresses_;  // likewise: their connections
   std::atomic<int> connections_ = 0;
   int port_ = 0;

@@ -234,6 +234,20 @@ class Time(unittest.TestCase):
         held[3].sendall(b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n")
         self.assertTrue(held[3].recv(100).startswith(b"HTTP/1.1 200"), "the others are not")
 
+    def test_addresses_take_turns_with_new_connections(self):
+        gateway = Gateway("--max_requests=2")
+        self.addCleanup(gateway.close)
+        gateway.process.send_signal(signal.SIGSTOP)  # so that all have come when it looks
+        many = [socket.create_connection(("127.0.0.1", gateway.http_port), source_address=("127.0.0.2", 0)) for _ in range(50)]
+        for connection in many:
+            self.addCleanup(connection.close)
+            connection.sendall(b"POST /v1/inspect HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n")  # each keeps a place
+        late = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.3", 0))
+        self.addCleanup(late.close)
+        late.request("POST", "/v1/inspect", PART)
+        gateway.process.send_signal(signal.SIGCONT)
+        self.assertEqual(late.getresponse().status, 200, "the second place, not one after fifty")
+
     def test_the_last_places_are_for_callers_who_have_none(self):
         gateway = Gateway("--max_requests=4")
         self.addCleanup(gateway.close)
