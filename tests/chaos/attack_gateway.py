@@ -37,6 +37,7 @@ ATTACKS = {
     "unfinished_jobs": transport.unfinished([GCODE_SERVICE + "CreateJob", GCODE_SERVICE + "GetJob"], 22, 60),
     "hoarded_jobs": jobs.hoarded_jobs,
     "cancelled_jobs": jobs.cancelled_jobs,
+    "endless_searches": jobs.endless_searches,
     "keys_of_many_files": jobs.keys_of_many_files,
     "guessed_ids": jobs.guessed_ids,
     "unread_events": jobs.unread_events,

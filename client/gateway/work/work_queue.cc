@@ -20,14 +20,15 @@ WorkQueue::Ticket::~Ticket() {
 
 namespace {
 
-// A small task takes no more than this part of the memory.
-constexpr int64_t kSmallPart = 16;
+// A small task takes no more than this part of the memory. So many of them may begin where all
+// workers have tasks that end late or never.
+constexpr int kSmallPart = 16;
 
 }  // namespace
 
 WorkQueue::WorkQueue(const WorkLimits& limits, const TimeSource* time)
     : limits_(limits), time_(time) {
-  for (int i = 0; i <= limits_.workers; ++i) workers_.emplace_back([this] { Work(); });
+  for (int i = 0; i <= limits_.workers + kSmallPart; ++i) workers_.emplace_back([this] { Work(); });
 }
 
 WorkQueue::~WorkQueue() {
@@ -132,11 +133,12 @@ bool WorkQueue::MayBegin(const Caller& caller, int64_t& waits_for) const {
   const int64_t bytes = caller.waiting.front().memory_bytes;
   const int64_t most = limits_.max_memory_bytes;
   const bool fits = memory_bytes_ + bytes <= most;
+  const bool small = bytes <= most / kSmallPart;
   if (waits_for > 0 || (memory_short_ && running_ > 0)) {
-    return fits && caller.running == 0 && !passing_ && bytes <= most / kSmallPart &&
-           waits_for + bytes <= most;
+    return fits && caller.running == 0 && !passing_ && small && waits_for + bytes <= most;
   }
   if (running_ >= limits_.workers && caller.running > 0) return false;
+  if (running_ > limits_.workers && !small) return false;
   if (!fits) waits_for = bytes;
   return fits;
 }

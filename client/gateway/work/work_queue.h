@@ -24,11 +24,12 @@
 namespace traverse::gateway {
 
 struct WorkLimits {
-  int workers = 2;                               // requests that are worked on at a time, and one
-                                                 // more of a caller of whom none is
-  int max_requests = 256;                        // from their heads on
-  int max_requests_per_caller = 64;              // the same of one caller
-  int64_t max_memory_bytes = int64_t{1} << 30;   // of those that are worked on
+  // Requests that are worked on at a time. One more may be of a caller of whom none is, and sixteen
+  // small ones, each of such a caller: a few whose work is endless keep nobody waiting.
+  int workers = 2;
+  int max_requests = 256;                             // from their heads on
+  int max_requests_per_caller = 64;                   // the same of one caller
+  int64_t max_memory_bytes = int64_t{1} << 30;        // of those that are worked on
   std::map<std::string, double> caller_weights = {};  // shares of the workers' time; others have 1
 };
 

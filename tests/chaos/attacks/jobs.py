@@ -66,6 +66,21 @@ def guess(server, number):
     ask(server, dice.choice(["GET", "DELETE", "HEAD"]), f"/v1/jobs/{name}-{digits}{dice.choice(['', '/file', '/report', '/x'])}")
 
 
+def endless_searches(server, end):
+    """A file from each of a few addresses whose search ends with the request, and whose sender waits for that."""
+    places = [(i * 37 % 200, i * 71 % 20 * 9) for i in range(200)]
+    body = infill(1).replace(b"M107", "".join(f"G1 X{x} Y{y} F9000\nG1 F1200\nG1 X{x + .8} Y{y} E.5\n" for x, y in places).encode() + b"M107")
+    held = []
+    for number in range(1, 9):
+        connection = open_http(server, f"127.0.1.{number}")
+        connection.sendall(b"POST /v1/gcode?strategy=tabu&option=evaluations=0&option=diversifications=1000000&layer_time_limit=1000s HTTP/1.1\r\n"
+                           b"Host: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        held.append(connection)
+    time.sleep(max(0, end - time.monotonic()))
+    for connection in held:
+        connection.close()
+
+
 def unread_events(server, end):
     """Readers of jobs that never read."""
     held, jobs = [], []

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <future>
 #include <map>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -68,13 +69,14 @@ class TestTime : public TimeSource {
 std::vector<std::string> Served(const std::vector<std::string>& callers,
                                 const std::map<std::string, double>& weights) {
   TestTime time;
-  WorkQueue queue({.workers = 1, .caller_weights = weights}, &time);
+  constexpr int64_t kLarge = 100;  // what small ones may pass
+  WorkQueue queue({.workers = 1, .max_memory_bytes = 1000, .caller_weights = weights}, &time);
   std::promise<void> all;
   std::vector<std::string> order;
-  Held first(queue, "x");
-  Held other(queue, "y");  // the worker for those who have none
+  Held first(queue, "x", kLarge);
+  Held other(queue, "y", kLarge);  // the worker for those who have none
   for (const std::string& caller : callers) {
-    queue.Submit(*queue.Enter(caller), 0, [&, caller] {
+    queue.Submit(*queue.Enter(caller), kLarge, [&, caller] {
       order.push_back(caller);
       time.PassSecond();
       if (order.size() == callers.size()) all.set_value();
@@ -112,6 +114,24 @@ TEST(WorkQueue, OneWorkerMoreIsForCallersOfWhomNothingIsUnderWay) {
   EXPECT_EQ(queue.waiting(), 1);
   one.End();
   two.End();
+}
+
+// A search may last for minutes.
+TEST(WorkQueue, FewCallersOfEndlessTasksKeepNoSmallOnesWaiting) {
+  WorkQueue queue({.workers = 2, .max_memory_bytes = 1600});
+  std::vector<std::unique_ptr<Held>> endless;
+  for (const char* caller : {"a", "b", "c", "d", "e"}) {
+    endless.push_back(std::make_unique<Held>(queue, caller, 100));
+  }
+  queue.Submit(*queue.Enter("a"), 100, [] {});
+  queue.Submit(*queue.Enter("f"), 101, [] {});
+  std::promise<void> done;
+
+  queue.Submit(*queue.Enter("g"), 100, [&] { done.set_value(); });
+
+  done.get_future().wait();
+  EXPECT_EQ(queue.waiting(), 2) << "the second one of a caller, and one that is not small";
+  for (const auto& task : endless) task->End();
 }
 
 // What waits for much memory does not keep others waiting who need little, but for more than it
