@@ -363,8 +363,8 @@ def rests(side, size):
         for cells, begin, end in islands_of(moves, size):
             under = [below[cell] for cell in cells if cell in below]
             if under:
-                first, end = (bisect.bisect_left(begins, moment - 1e-6) for moment in (max(under), begin))
-                found[z, min(cells)] = begin - max(under), end > first
+                before, at = (bisect.bisect_left(begins, moment - 1e-6) for moment in (max(under), begin))
+                found[z, min(cells)] = begin - max(under), at > before
             for cell in cells:
                 now[cell] = end
         below = {**below, **now}

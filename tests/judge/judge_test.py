@@ -65,6 +65,20 @@ class Checks(unittest.TestCase):
         self.assertIn("rest", faults(self.towers, after))
         self.assertEqual(faults(self.towers, after, "free"), set())
 
+    def test_islands_of_many_short_moves_rest_in_seconds(self):
+        def tower(x):  # of 10 s
+            steps = [f"G1 X{x + n % 2} Y{10 + n / 100:g} E0.01" for n in range(1, 301)]
+            return [f"G1 X{x} Y10 F9000", "G1 F1800"] + steps
+
+        def rows(*towers):
+            return HEAD + [line for n in (1, 2, 3) for line in layer(0.2 * n, *towers)]
+
+        before = rows(tower(10), ["G1 X200 Y200 F18000"], tower(40))
+        turned = HEAD + rows(tower(10), tower(40))[len(HEAD):-len(layer(0, tower(10), tower(40)))]
+
+        self.assertEqual(faults(before, rows(tower(10), tower(40))), set())
+        self.assertIn("rest", faults(before, turned + layer(0.6, tower(40), tower(10))))
+
     def test_an_island_that_is_printed_twice_running_needs_no_rest(self):
         away = ["G1 X200 Y200 F1800"]  # of 8 s
         before = HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, away, block(10, 0.4))
