@@ -14,9 +14,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Paths whose middles are closer than this are of one island: heat passes between them.
-constexpr double kIslandsApartMm = 1;
-
 // Layers whose cells are kept at once.
 constexpr size_t kBatch = 16;
 
@@ -30,10 +27,7 @@ void AddOutline(const Outline& outline, uint32_t island, IslandMap& map) {
 // Adds the islands of layer `layer` to `islands`, and returns their cells, each once.
 std::vector<IslandCell> FindIslands(const GcodeFile& file, const Layer& layer,
                                     LayerIslands& islands) {
-  std::vector<Outline> outlines = OutlinesOf(file, layer);
-  for (Outline& outline : outlines) {
-    outline.width_mm = std::max(outline.width_mm, kIslandsApartMm / kTouch);
-  }
+  const std::vector<Outline> outlines = OutlinesOf(file, layer);
   islands.island = FindContacts(outlines, [](uint32_t, uint32_t) { return false; }).island;
   uint32_t count = 0;
   for (const uint32_t island : islands.island) count = std::max(count, island + 1);

@@ -1,7 +1,7 @@
 // The islands of all layers, and what each of them lies on.
 //
-// An island is a connected region of a layer: of paths that touch or lie within 1 mm. It lies on
-// the islands printed last before it wherever it is. These are mostly those of the layer before,
+// An island is a connected region of a layer: of paths that touch (precedence.h). It lies on the
+// islands printed last before it wherever it is. These are mostly those of the layer before,
 // but not where objects have layers of different heights, or are printed one after the other.
 // Islands near each other also count as one (island_tree.h), in both layers.
 

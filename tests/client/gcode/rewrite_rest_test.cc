@@ -20,7 +20,7 @@ namespace {
 
 using namespace testing;  // NOLINT: the small files
 
-using Places = std::vector<std::pair<int, int>>;
+using Places = std::vector<std::pair<double, double>>;
 
 // At the corners of a square, across it and back: 386 mm a layer where 320 are enough, and 240 if
 // the next layer begins where this one ends.
@@ -33,9 +33,9 @@ std::string Pillars(const Places& places, int layers, const std::string& setting
     absl::StrAppend(&text, ";LAYER_CHANGE\n;Z:", layer, "\nG1 Z", layer, " F9000\n");
     for (const auto& [x, y] : places) {
       for (int line = 0; line < 3; ++line) {
-        const int from = line % 2 == 0 ? y : y + 10;
-        const int to = line % 2 == 0 ? y + 10 : y;
-        absl::StrAppend(&text, "G1 X", x, ".", 4 * line, " Y", from, " F9000\n",
+        const double from = line % 2 == 0 ? y : y + 10;
+        const double to = line % 2 == 0 ? y + 10 : y;
+        absl::StrAppend(&text, "G1 X", x + 0.4 * line, " Y", from, " F9000\n",
                         ";TYPE:Internal infill\nG1 F400\nG1 Y", to, " E.5\n");
       }
     }
@@ -145,6 +145,23 @@ TEST(RewriteRest, IslandsThatCountAsOneRestTogether) {
   EXPECT_GT(Saved(rewrite), 0.05);
   EXPECT_NEAR(LeastRestLeftOf(70, text), 13.5, 0.1);
   EXPECT_GE(LeastRestLeftOf(70, rewrite.text), 9);
+}
+
+TEST(RewriteRest, IslandsThatHardlyLeaveAirBetweenThemRestAlone) {
+  // The first two are 0.7 mm apart, and each rests 18 s.
+  const Places places = {{60, 60}, {61.5, 60}, {140, 140}, {140, 60}, {90, 140}};
+  const std::string text = Pillars(places, 6, "; slow_down_layer_time = 17\n");
+  // Which of the two comes first changes from layer to layer: 13.5 s for one of them.
+  FileOrder orders = InSequence({0, 1, 4, 2, 3}, 6, false);
+  for (size_t layer = 1; layer < orders.size(); layer += 2) {
+    std::rotate(orders[layer].begin(), orders[layer].begin() + 3, orders[layer].begin() + 6);
+  }
+
+  const GcodeRewrite rewrite = Rewritten(text, orders, Policy::kSafe);
+
+  EXPECT_GT(Saved(rewrite), 0.05);
+  EXPECT_NEAR(LeastRestLeftOf(61, text), 18, 0.1);
+  EXPECT_GE(LeastRestLeftOf(61, rewrite.text), 16);
 }
 
 TEST(RewriteRest, ALayerWithoutTheIslandIsRestToo) {

@@ -21,7 +21,7 @@ constexpr double kLeastShare = 0.95;
 constexpr double kSlackSeconds = 1e-3;
 
 constexpr double kPlaceMm = 1;
-constexpr double kLeastReachMm = 1.02;
+constexpr double kLeastReachMm = 0.52;
 constexpr double kMostReachMm = 4;
 constexpr uint64_t kLooks = 100'000;  // at pairs of pieces, and for each piece
 constexpr uint64_t kLooksEach = 1'000;

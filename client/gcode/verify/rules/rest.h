@@ -35,7 +35,8 @@ struct PrintedIslands {
   std::vector<IslandCell> cells;  // ascending
 };
 
-// Paths within 1 mm, or about 1.25 line widths as their filament implies them, are of one island.
+// Paths within 0.52 mm, or about 1.25 line widths as their filament implies them, touch and are of
+// one island.
 // `height_mm` is that of the layer.
 PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm);
 

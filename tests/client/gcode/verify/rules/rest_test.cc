@@ -16,18 +16,18 @@ using namespace testing;  // NOLINT: the small prints
 constexpr uint32_t kRestRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kRest);
 
 // A line of 10 mm at `x`, printed in `seconds`.
-std::string Island(int x, int seconds) {
+std::string Island(double x, int seconds) {
   return absl::StrCat(Travel(absl::StrCat("X", x, " Y0")), ";TYPE:Internal infill\nG1 F",
                       600 / seconds, "\nG1 Y10 E.3\n");
 }
 
 // Layers of such islands, each of 4 s, in the order of their positions.
-std::string Print(const std::vector<std::vector<int>>& layers, const std::string& between = "") {
+std::string Print(const std::vector<std::vector<double>>& layers, const std::string& between = "") {
   std::string text = "M83\n";
   int height = 1;
-  for (const std::vector<int>& layer : layers) {
+  for (const std::vector<double>& layer : layers) {
     text += absl::StrCat(";LAYER_CHANGE\nG1 Z", height++, " F9000\n");
-    for (const int x : layer) text += Island(x, 4) + (x == layer.front() ? between : "");
+    for (const double x : layer) text += Island(x, 4) + (x == layer.front() ? between : "");
   }
   return text;
 }
@@ -105,7 +105,7 @@ TEST(VerifyRest, CirclesThatDoNotTouchAreIslandsOfTheirOwn) {
 }
 
 TEST(VerifyRest, IslandsThatCountAsOneRestTogether) {
-  const auto islands = [](int apart) {
+  const auto islands = [](double apart) {
     // Each rests 12 s, and both together 8 s.
     const std::string given = Print({{0, apart, 20, 40}, {0, apart, 20, 40}});
     return std::pair(Rests(given, Print({{0, 20, 40, apart}, {0, 20, 40, apart}})),
@@ -114,6 +114,17 @@ TEST(VerifyRest, IslandsThatCountAsOneRestTogether) {
 
   EXPECT_EQ(islands(2), std::pair(std::string("rest"), std::string()));
   EXPECT_EQ(islands(4), std::pair(std::string(), std::string()));
+}
+
+TEST(VerifyRest, IslandsThatHardlyLeaveAirBetweenThemRestAlone) {
+  const auto islands = [](double apart) {
+    // The second rests 12 s, and 8 s if the next layer begins with it.
+    return Rests(Print({{0, apart, 20, 40}, {0, apart, 20, 40}}),
+                 Print({{0, apart, 20, 40}, {apart, 0, 20, 40}}));
+  };
+
+  EXPECT_EQ(islands(0.7), "rest");
+  EXPECT_EQ(islands(0.45), "");  // they touch
 }
 
 TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
