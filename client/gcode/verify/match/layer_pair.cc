@@ -44,22 +44,24 @@ bool GoesStraightOn(const TraceMove& move, const Piece& last) {
   return DistanceToPiece(move.to, last.b, on) <= kOnPathMm;
 }
 
-// The end of the moves of `link` that coast: no faster than the path before, which ended with
-// `last`, they go straight on from there. Slicers coast round corners, too; but what leads farther,
-// or to the next path, is travel behind the first of them.
-uint32_t CoastingEnd(const TraceChunk& chunk, const TraceLink& link, Micro feed,
-                     const Piece& last) {
+// The end of the moves that coast in the link behind `path`, whose last line is `last`: no faster
+// than the path, they go straight on from there. Slicers coast round corners, too; but what leads
+// farther, or to the next path, is travel behind the first of them.
+uint32_t CoastingEnd(const TraceChunk& chunk, uint32_t path, const Piece& last) {
+  const TraceLink& link = chunk.links[path + 1];
   double length = 0;
   uint32_t m = link.first_move;
   for (; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    const bool slow = move.kind == MoveKind::kTravel && move.open && move.feed <= feed;
+    const bool slow =
+        move.kind == MoveKind::kTravel && move.open && move.feed <= chunk.paths[path].feed;
     if (!slow || move.arc || move.z_to_mm != move.z_from_mm) break;
     const double before = std::exchange(length, length + move.length_mm());
     if (m == link.first_move && !GoesStraightOn(move, last)) return m;
     if (length > kLongestTailMm) return link.first_move + (before > 0 ? 1 : 0);
   }
-  return m == link.end_move ? std::min(m, link.first_move + 1) : m;
+  const bool leads_on = m == link.end_move && path + 1 < chunk.paths.size();
+  return leads_on ? std::min(m, link.first_move + 1) : m;
 }
 
 bool LiesOn(Point p, absl::Span<const Piece> pieces) {
@@ -276,8 +278,7 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
     }
     return LiesOn(p, pieces);
   };
-  const uint32_t coasting =
-      any_speed ? link.first_move : CoastingEnd(chunk, link, traced.feed, last);
+  const uint32_t coasting = any_speed ? link.first_move : CoastingEnd(chunk, path, last);
   uint32_t m = link.first_move + (any_speed ? TailMoves(chunk, path, pieces) : 0);
   for (; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
