@@ -2,25 +2,25 @@
 
     grow.py [--seconds=S a cell, 3] [--only=DIMENSION,...] [--calls=NAME,...] [--least=S, 0.15]
 
-Each row is a dimension (paths, tools, labels, ...), each column a command of `traverse`, or a call of traverse-server. A cell
-doubles the dimension until a run takes S seconds or the file has 24 MB, and shows by what time and memory grew with the last
-doublings: n log n is a factor of about 2.1. `*` marks time, and `!` memory, that grew by more than 2.6 in each of the last two
-doublings. The environment names the binaries: TRAVERSE, and optionally TRAVERSE_GATEWAY, whose calls are then asked too.
+Each row is a dimension (paths, tools, labels, ...), each column a command of `traverse`, or a call of a gateway or a
+server by HTTP or gRPC (grown_calls.py). A cell doubles the dimension until a run takes S seconds or the file has 24 MB,
+and shows by what time and memory grew with the last doublings: n log n is a factor of about 2.1. `*` marks time, and
+`!` memory, that grew by more than 2.6 in each of the last two doublings; of a call they are those of the program that
+is asked. The environment names the binaries: TRAVERSE, and optionally TRAVERSE_GATEWAY and TRAVERSE_SERVER, whose calls
+are then asked too.
 """
 import argparse
 import io
 import json
 import os
 import random
-import resource
-import subprocess
 import sys
 import tempfile
-import threading
-import time
 import zipfile
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+from grown_calls import ALL, end_programs
+
 MOST_BYTES = 24 << 20
 FASTER = 2.6
 
@@ -243,74 +243,6 @@ def shuffled(text):
     return begin.join(parts[:1] + middle + parts[-1:])
 
 
-class Command:
-    """A command in a process of its own: its seconds of CPU and its peak of memory."""
-
-    def __init__(self, *arguments):
-        self.arguments = arguments
-
-    def run(self, given, other, made):
-        command = [os.environ["TRAVERSE"]] + [{"GIVEN": given, "OTHER": other, "MADE": made}.get(word, word) for word in self.arguments]
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (30, 30)))
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = status
-        return used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
-
-
-class Call:
-    """A call of the gateway: what its process took meanwhile."""
-    gateway = None
-
-    def __init__(self, path, both=False, as_json=False):
-        self.path, self.both, self.as_json = path, both, as_json
-
-    def run(self, given, other, made):
-        if Call.gateway is None:
-            from attacks.attacked_server import Gateway
-            Call.gateway = Gateway(2_000_000_000, ["--log_file=/dev/null", "--max_time=30s"])
-        pid = Call.gateway.process.pid
-        with open(f"/proc/{pid}/clear_refs", "w", encoding="ascii") as file:
-            file.write("5")
-        before = self.ticks(pid)
-        forms = ["-F", f"original=@{given}", "-F", f"optimised=@{other}"] if self.both else ["-F", f"file=@{given}"]
-        if self.as_json:
-            forms = ["-H", "Content-Type: application/json", "--data-binary", f"@{given}"]
-        subprocess.run(["curl", "--silent", "--max-time", "40", "-o", made, *forms, f"http://127.0.0.1:{Call.gateway.http_port}{self.path}"],
-                       check=False)
-        with open(f"/proc/{pid}/status", encoding="ascii") as file:
-            peak = next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmHWM"))
-        return self.ticks(pid) - before, peak
-
-    @staticmethod
-    def ticks(pid):
-        with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-            words = file.read().rpartition(")")[2].split()
-        return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
-
-
-CALLS = {
-    "inspect": Command("inspect", "GIVEN"),
-    "greedy": Command("optimize", "GIVEN", "--policy=free", "--strategy=greedy", "-o", "MADE", "--quiet"),
-    "auto": Command("optimize", "GIVEN", "--policy=balanced", "--deadline=1s", "-o", "MADE", "--quiet"),
-    "verify": Command("verify", "GIVEN", "OTHER"),
-    "free": Command("verify", "--policy=free", "--allow=infill_order,wall_order,fan_order,wipes", "GIVEN", "OTHER"),
-    "compare": Command("compare", "GIVEN", "--strategies=none,greedy"),
-    "convert": Command("convert", "GIVEN", "-o", "MADE"),
-}
-# Of jobs.
-JOB_CALLS = {
-    "job": Command("optimize", "GIVEN", "--strategy=greedy", "--json=MADE", "--quiet"),
-    "job_auto": Command("optimize", "GIVEN", "--deadline=1s", "--json=MADE", "--quiet"),
-}
-GATEWAY_CALLS = {
-    "/v1/gcode": Call("/v1/gcode?strategy=greedy&policy=free"),
-    "/v1/inspect": Call("/v1/inspect"),
-    "/v1/verify": Call("/v1/verify", both=True),
-    "/v1/optimize": Call("/v1/optimize?deadline=30s", as_json=True),
-}
-
-
 def write(path, content):
     with open(path, "wb") as file:
         file.write(content.encode() if isinstance(content, str) else content)
@@ -351,7 +283,7 @@ def main():
     arguments.add_argument("--seconds", type=float, default=3)
     arguments.add_argument("--least", type=float, default=0.15)
     arguments.add_argument("--only", default=",".join(DIMENSIONS))
-    calls = {**CALLS, **JOB_CALLS, **(GATEWAY_CALLS if "TRAVERSE_GATEWAY" in os.environ else {})}
+    calls = {name: call for name, call in ALL.items() if call.can_be_asked()}
     arguments.add_argument("--calls", default=",".join(calls))
     given = arguments.parse_args()
     names = given.calls.split(",")
@@ -361,8 +293,7 @@ def main():
         for dimension in given.only.split(","):
             row = f"{dimension:18}"
             for name in names:
-                of_jobs = name in JOB_CALLS or name == "/v1/optimize"
-                if of_jobs != (SUFFIX.get(dimension) == ".json"):
+                if calls[name].of_layers != (SUFFIX.get(dimension) == ".json"):
                     row += f"{'-':28}"
                     continue
                 text, bad = cell(grow(dimension, calls[name], given.seconds, folder), given.least)
@@ -370,8 +301,7 @@ def main():
                 if bad:
                     faults.append(f"{dimension} in {name}")
             print(row, flush=True)
-    if Call.gateway is not None:
-        Call.gateway.process.kill()
+    end_programs()
     for fault in faults:
         print("grows faster than n log n:", fault)
     sys.exit(1 if faults else 0)
