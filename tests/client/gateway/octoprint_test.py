@@ -230,6 +230,12 @@ class Uploads(unittest.TestCase):
         self.printer.delay = 5
         status, _, body = self.send(gateway)
         self.assertEqual(status, 504, body)
+        self.printer.delay = 0
+        self.printer.trickles = True
+        for path in ("/api/files/local", "/printers/moon/api/files/local", "/printers/link/api/files/local"):
+            status, _, body = self.send(gateway, path=path)
+            self.assertEqual(status, 504, (path, body))
+        self.assertEqual(gateway.ask("GET", "/api/version", headers=KEY)[0], 504)
 
     def test_names_are_not_trusted(self):
         gateway = self.start()

@@ -19,14 +19,15 @@ def parts_of(body, content_type):
 
 
 class PrinterStandIn:
-    """One server on a port of its own. `uploads` has what came, `keys` what each request showed; `fail` and `delay` make it
-    answer badly or late; while it is `away` a Moonraker takes files and prints nothing."""
+    """One server on a port of its own. `uploads` has what came, `keys` what each request showed; `fail`, `delay` and
+    `trickles` make it answer badly, late or without an end; while it is `away` a Moonraker takes files and prints nothing."""
 
     def __init__(self, key="secret"):
         self.uploads = []
         self.keys = []
         self.fail = 0
         self.delay = 0
+        self.trickles = False
         self.away = False
         stand_in = self
 
@@ -53,10 +54,23 @@ class PrinterStandIn:
                     self.rfile.readline()
                 return out
 
+            def trickle(self):
+                """A head without an end, a letter at a time, until the other side has had enough."""
+                try:
+                    self.wfile.write(b"HTTP/1.1 200 OK\r\nX: ")
+                    while True:
+                        self.wfile.write(b"x")
+                        time.sleep(0.1)
+                except OSError:
+                    self.close_connection = True
+
             def handled(self):
                 """Whether all has been said: a key that is wrong, a fault that was asked for."""
                 stand_in.keys.append(self.headers.get("X-Api-Key"))
                 time.sleep(stand_in.delay)
+                if stand_in.trickles:
+                    self.trickle()
+                    return True
                 if self.headers.get("X-Api-Key") != key:
                     self.answer(403, {"error": "You don't have the permission"})
                     return True
