@@ -120,6 +120,18 @@ TEST(FileDescriptors, WhenTheyRunOutIdleConnectionsMakeRoomForJobs) {
   EXPECT_EQ(server.process().Wait(), 0);
 }
 
+TEST(FileDescriptors, TheStartSaysThatThereAreFewerThanConnectionsNeed) {
+  ServerProcess enough({"--max_connections=10"});
+  EXPECT_TRUE(TestService::Eventually(
+      [&] { return enough.process().Errors().find("\"started\"") != std::string::npos; }));
+  ServerProcess few({"--max_connections=2000000000"});
+
+  EXPECT_TRUE(TestService::Eventually([&] {
+    return few.process().Errors().find("connections, not 2000000000") != std::string::npos;
+  })) << few.process().Errors();
+  EXPECT_EQ(enough.process().Errors().find("few_files"), std::string::npos);
+}
+
 // gRPC takes the connections of such a port, and gives it up then; a server that lives on without
 // would be worse than one that is started again.
 TEST(FileDescriptors, WhenTheyRunOutAServerOnAUnixSocketDrainsAndEnds) {
