@@ -29,6 +29,11 @@ class Turns {
   bool empty() const { return size_ == 0; }
   size_t size() const { return size_; }
 
+  size_t of(const std::string& address) const {
+    const auto found = waiting_.find(address);
+    return found == waiting_.end() ? 0 : found->second.size();
+  }
+
   // Of the address that has most.
   size_t most() const { return empty() ? 0 : Longest(waiting_)->second.size(); }
 

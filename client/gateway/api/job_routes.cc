@@ -67,7 +67,9 @@ class EventsSink : public BodySink {
   }
 
   void Done(std::shared_ptr<HttpReply> reply) override {
-    reply->Begin(EventsHead());
+    HttpResponse head = EventsHead();
+    head.only_watches = true;
+    reply->Begin(std::move(head));
     const uint64_t reader = job_->Follow(
         known_,
         {.on_change =

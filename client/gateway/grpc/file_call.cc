@@ -28,14 +28,16 @@ FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::
   }
   status_ = Authorize(context, *core_.files.auth, info_);
   if (!status_.ok()) return;
-  if (brings == Brings::kFile) {
-    absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
-    status_ = ticket.status();
-    if (!ticket.ok()) return;
-    ticket_ = *std::move(ticket);
+  if (brings == Brings::kQuestion) {
+    // Its one message is here, and the answer can be asked for again: the connection may give way.
+    ConnectionJob(core_.connections, info_.peer).OnAllCame();
+    return;
   }
+  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
+  status_ = ticket.status();
+  if (!ticket.ok()) return;
+  ticket_ = *std::move(ticket);
   job_.emplace(core_.connections, info_.peer);
-  if (brings == Brings::kQuestion) job_->OnAllCame();  // its one message is here
 }
 
 absl::Status FileCall::OnMessage(size_t bytes) {

@@ -17,7 +17,8 @@ class AnySession {
   // Ends it if it waits for a request; otherwise it ends after the current one.
   virtual void Drain() = 0;
 
-  // Since when it waits for a request, or for the rest of its head; nothing if it does not.
+  // Since when it waits for a request or for the rest of its head, or has sent nothing of an answer
+  // for which nobody works any more. Nothing if its client's work would be lost with it.
   virtual std::optional<std::chrono::steady_clock::time_point> idle_since() const = 0;
   virtual const std::string& peer_host() const = 0;
 

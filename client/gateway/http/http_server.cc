@@ -152,13 +152,21 @@ class BeastServer : public HttpServer {
     ++connections_;
     ++addresses_[address];
     waiting_.Add(address, {std::move(socket), address});
-    if (waiting_.size() == 1) net::post(*loop_, [this] { ServeNext(); });
+    ServeSoon();
   }
 
   // One each time the loop comes round: serving those of one address keeps no other waiting.
+  void ServeSoon() {
+    if (std::exchange(serves_soon_, true)) return;
+    net::post(*loop_, [this] {
+      serves_soon_ = false;
+      if (!waiting_.empty()) ServeNext();
+    });
+  }
+
   void ServeNext() {
     auto [socket, address] = waiting_.TakeNext();
-    if (!waiting_.empty()) net::post(*loop_, [this] { ServeNext(); });
+    if (!waiting_.empty()) ServeSoon();
     if (!acceptor_.is_open()) return Forget(address);
     beast::tcp_stream stream(std::move(socket));
     if (tls_ == nullptr) {
@@ -173,7 +181,16 @@ class BeastServer : public HttpServer {
           address);
   }
 
+  // For a new one of `address`: those that wait have cost nothing yet. An address of which some do
+  // gets no room for more.
   bool MakeRoom(const std::string& address) {
+    if (waiting_.most() > waiting_.of(address) + 1) {
+      NewConnection last = waiting_.TakeLastOfMost();
+      Forget(last.address);
+      Refuse(std::move(last.socket), "too many connections");
+      return true;
+    }
+    if (waiting_.of(address) > 0) return false;
     GiveWay<AnySession*> give_way;
     for (AnySession* session : sessions_) {
       const auto since = session->idle_since();
@@ -224,6 +241,7 @@ class BeastServer : public HttpServer {
   const std::shared_ptr<net::io_context> loop_;
   tcp::acceptor acceptor_;
   Turns<NewConnection> waiting_;          // of the loop's thread: not yet served
+  bool serves_soon_ = false;              // likewise: ServeNext will be called
   std::set<AnySession*> sessions_;        // likewise
   std::map<std::string, int> addresses_;  // likewise: their connections
   std::atomic<int> connections_ = 0;

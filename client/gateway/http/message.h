@@ -41,6 +41,10 @@ struct HttpResponse {
   std::string content_type;  // empty: no body
   std::vector<std::pair<std::string, std::string>> headers;
   HttpBody body;
+
+  // Of an answer that is written piece by piece: it tells of work that goes on without it, and can
+  // be asked for again. Its connection may be closed to make room for others.
+  bool only_watches = false;
 };
 
 // Sends the answer to a request. Thread-safe; all calls return at once. If the client has gone,

@@ -24,6 +24,7 @@ void ReplyQueue::Begin(HttpResponse head) {
   {
     MutexLock lock(mutex_);
     if (!Open()) return;
+    only_watches_ = head.only_watches;
     head_ = std::move(head);
     streaming_ = true;
   }
@@ -94,6 +95,11 @@ std::optional<HttpBody> ReplyQueue::TakePiece() {
 bool ReplyQueue::ended() const {
   MutexLock lock(mutex_);
   return ended_ && pieces_.empty();
+}
+
+bool ReplyQueue::is_worked_on() const {
+  MutexLock lock(mutex_);
+  return !ended_ && !only_watches_;
 }
 
 void ReplyQueue::Gone() {

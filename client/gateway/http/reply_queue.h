@@ -36,6 +36,9 @@ class ReplyQueue : public HttpReply {
   std::optional<HttpBody> TakePiece();
   bool ended() const;
 
+  // Whether work goes on that is lost with the connection.
+  bool is_worked_on() const;
+
   // The client has gone.
   void Gone();
 
@@ -47,6 +50,7 @@ class ReplyQueue : public HttpReply {
   mutable Mutex mutex_;
   std::optional<HttpResponse> head_ TRAVERSE_GUARDED_BY(mutex_);
   bool streaming_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool only_watches_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::deque<HttpBody> pieces_ TRAVERSE_GUARDED_BY(mutex_);
   size_t text_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of pieces_
   bool ended_ TRAVERSE_GUARDED_BY(mutex_) = false;

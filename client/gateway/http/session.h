@@ -65,6 +65,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   net::awaitable<void> Run() {
     assert(IsInLoop());
     const auto self = this->shared_from_this();
+    MayGiveWay();
     if (!co_await Handshake()) co_return;
     bool again = true;
     while (again && !draining_) {
@@ -80,7 +81,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   void Drain() override {
     assert(IsInLoop());
     draining_ = true;
-    if (idle_since_) Lowest().cancel();
+    if (waits_for_head_) Lowest().cancel();
   }
 
   std::optional<std::chrono::steady_clock::time_point> idle_since() const override {
@@ -92,6 +93,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     assert(IsInLoop());
     idle_since_.reset();
     Lowest().close();
+    wake_.cancel();
   }
 
  private:
@@ -99,6 +101,9 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   static constexpr size_t kPiece = 131072;
 
   bool IsInLoop() const { return loop_->get_executor().running_in_this_thread(); }
+
+  // To new connections, see AnySession; from now on, until idle_since_ is reset.
+  void MayGiveWay() { idle_since_ = Clock::now(); }
 
   beast::tcp_stream& Lowest() { return beast::get_lowest_layer(stream_); }
 
@@ -150,11 +155,12 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     parser.header_limit(limits_.max_head_bytes);
     parser.body_limit(std::numeric_limits<uint64_t>::max());  // the handler knows
     SetTimer(limits_.head_time);
-    idle_since_ = Clock::now();
+    MayGiveWay();
+    waits_for_head_ = true;
     boost::system::error_code error;
     co_await http::async_read_header(stream_, buffer_, parser,
                                      net::redirect_error(net::use_awaitable, error));
-    idle_since_.reset();
+    waits_for_head_ = false;
     if (error) {
       unread_ = true;
       std::optional<HttpResponse> refusal = HeadFault(error, timed_out_, buffer_.size() > 0);
@@ -166,6 +172,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     bool keep = parser.keep_alive() && HasKnownCoding(parser.get());
     HttpDecision decision = Decide(parser);
     if (auto* sink = std::get_if<std::unique_ptr<BodySink>>(&decision)) {
+      idle_since_.reset();
       std::optional<HttpResponse> refusal = co_await ReadBody(parser, **sink);
       if (!refusal) {
         reply_ = std::make_shared<ReplyQueue>(Waker());
@@ -174,6 +181,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
         co_return co_await Answer(version, head_only, keep && !draining_);
       }
       decision = *std::move(refusal);
+      MayGiveWay();
     }
     unread_ = !parser.is_done();
     keep = keep && !unread_ && !draining_;
@@ -198,6 +206,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
       co_await net::async_write(stream_, net::buffer(go_on),
                                 net::redirect_error(net::use_awaitable, error));
     }
+    parser.eager(true);  // chunks of a few bytes together
     std::vector<char> piece(parser.is_done() ? 0 : kPiece);
     const absl::Time began = absl::Now();
     uint64_t received = 0;
@@ -251,6 +260,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     wake_.expires_after(kLook);
     boost::system::error_code error;
     co_await wake_.async_wait(net::redirect_error(net::use_awaitable, error));
+    if (!Lowest().socket().is_open()) co_return false;  // it gave way
     pollfd peer = {Lowest().socket().native_handle(), POLLRDHUP, 0};
     const bool gone =
         poll(&peer, 1, 0) > 0 && (peer.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
@@ -265,10 +275,12 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
       if (!co_await WaitForReply()) co_return false;
       head = reply->TakeHead();
     }
+    if (!reply->is_worked_on()) MayGiveWay();
     if (!reply->streaming()) co_return co_await Respond(*head, head_only, version, keep);
     const bool chunked = version >= 11;
     if (!co_await WriteHead(*head, version, keep && chunked, std::nullopt)) co_return false;
     while (!reply->ended()) {
+      if (!idle_since_ && !reply->is_worked_on()) MayGiveWay();
       std::optional<HttpBody> piece = reply->TakePiece();
       if (!piece) {
         if (!co_await WaitForReply()) co_return false;
@@ -336,6 +348,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
       co_await net::async_write(stream_, net::const_buffer(data, size),
                                 net::redirect_error(net::use_awaitable, error));
     }
+    if (idle_since_) MayGiveWay();
     co_return !error;
   }
 
@@ -377,6 +390,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   net::steady_timer wake_;
   std::shared_ptr<ReplyQueue> reply_;  // for the current request
   std::optional<Clock::time_point> idle_since_;
+  bool waits_for_head_ = false;
   bool unread_ = false;  // part of a body is unread
   bool draining_ = false;
 };

@@ -173,6 +173,35 @@ def many_parts():
     return b"--b\r\nContent-Disposition: form-data; name=\"a\"\r\n\r\n\r\n" * 200_000 + b"--b--\r\n"
 
 
+def boundaries_but_for_a_letter():
+    """A part full of beginnings of the boundary that ends it."""
+    head = b"--" + BOUNDARY + b"\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a.gcode\"\r\n\r\n"
+    return head + (b"\r\n--" + BOUNDARY[1:]) * 400_000 + b"\r\n--" + BOUNDARY + b"--\r\n"
+
+
+BOUNDARY = b"a" * 70
+
+
+def tiny_chunks(server, end):
+    """Bodies in chunks of one byte, as fast as they are taken."""
+    piece = b"1\r\n;\r\n" * 40_000
+
+    def one(number):
+        def step():
+            with open_http(server, f"127.0.1.{number}") as connection:
+                connection.sendall(b"POST /v1/inspect HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n")
+                while time.monotonic() < end:
+                    connection.sendall(piece)
+
+        until(end, patiently(step))
+
+    threads = [threading.Thread(target=one, args=(i,)) for i in range(1, 5)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
 def dense():
     return infill(2) + b"G1X1Y1E1\nG1X2Y1E1\n" * 900_000
 

@@ -8,6 +8,7 @@ import time
 from attacks.attacked_server import infill
 from attacks.files import open_http
 from attacks.transport import patiently, until
+from http2_client import DATA, END_STREAM, GCODE_SERVICE, Connection, field, frame, message
 
 
 def ask(server, method, path, body=None, source="127.0.0.1", **headers):
@@ -66,19 +67,59 @@ def guess(server, number):
     ask(server, dice.choice(["GET", "DELETE", "HEAD"]), f"/v1/jobs/{name}-{digits}{dice.choice(['', '/file', '/report', '/x'])}")
 
 
-def endless_searches(server, end):
-    """A file from each of a few addresses whose search ends with the request, and whose sender waits for that."""
+# A search that ends with the request, or after minutes, and its file.
+ENDLESS = "?strategy=tabu&option=evaluations=0&option=diversifications=1000000&layer_time_limit=1000s"
+
+
+def endless_infill():
     places = [(i * 37 % 200, i * 71 % 20 * 9) for i in range(200)]
-    body = infill(1).replace(b"M107", "".join(f"G1 X{x} Y{y} F9000\nG1 F1200\nG1 X{x + .8} Y{y} E.5\n" for x, y in places).encode() + b"M107")
+    lines = "".join(f"G1 X{x} Y{y} F9000\nG1 F1200\nG1 X{x + .8} Y{y} E.5\n" for x, y in places)
+    return infill(1).replace(b"M107", lines.encode() + b"M107")
+
+
+def endless_searches(server, end):
+    """A file from each of a few addresses whose search does not end, and whose sender waits for that."""
+    body = endless_infill()
     held = []
     for number in range(1, 9):
         connection = open_http(server, f"127.0.1.{number}")
-        connection.sendall(b"POST /v1/gcode?strategy=tabu&option=evaluations=0&option=diversifications=1000000&layer_time_limit=1000s HTTP/1.1\r\n"
-                           b"Host: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        connection.sendall(b"POST /v1/gcode%s HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n"
+                           % (ENDLESS.encode(), len(body)) + body)
         held.append(connection)
     time.sleep(max(0, end - time.monotonic()))
     for connection in held:
         connection.close()
+
+
+def watchers(server, end):
+    """Three addresses that watch jobs of theirs, each by as many connections as may, of HTTP before gRPC."""
+    held, jobs = [], []
+    body = endless_infill()
+    for number in range(180):
+        source = f"127.0.1.{number % 3 + 1}"
+        status, answer = ask(server, "POST", "/v1/jobs" + ENDLESS, body, source)
+        if status == 202:
+            jobs.append((source, json.loads(answer)["id"].encode()))
+
+    def step():
+        if len(held) >= 4 * len(jobs):
+            time.sleep(0.1)
+            return
+        source, name = jobs[len(held) // 4]
+        if len(held) < 550:
+            connection = open_http(server, source)
+            connection.sendall(b"GET /v1/jobs/%s HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n" % name)
+        else:
+            connection = Connection(server.port, source=source)
+            stream = connection.call(GCODE_SERVICE + "WatchJob")
+            connection.send(frame(DATA, END_STREAM, stream, message(field(1, name))))
+        held.append(connection)
+
+    until(end, patiently(step))
+    for connection in held:
+        connection.close()
+    for source, name in jobs:
+        patiently(lambda source=source, name=name: ask(server, "DELETE", "/v1/jobs/" + name.decode(), None, source))()
 
 
 def unread_events(server, end):

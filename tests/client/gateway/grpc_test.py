@@ -2,6 +2,7 @@
 
 Skips without it. The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 """
+import json
 import os
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
+from gateway_process import ENDLESS, TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
 
 PROTO = os.path.join(os.path.dirname(TESTS), "proto")
 PART = lines_of_infill(3)
@@ -271,8 +272,8 @@ class Jobs(OnGateway):
     def ask(self, name, channel=None, **fields):
         return self.method(name, "unary_unary", channel)(MESSAGES[name + "Request"](**fields), timeout=60)
 
-    def stream(self, name, **fields):
-        return self.method(name, "unary_stream")(MESSAGES[name + "Request"](**fields), timeout=60)
+    def stream(self, name, channel=None, **fields):
+        return self.method(name, "unary_stream", channel)(MESSAGES[name + "Request"](**fields), timeout=60)
 
     def read(self, **fields):
         return b"".join(piece.data for piece in self.stream("ReadJob", **fields))
@@ -349,6 +350,24 @@ class Jobs(OnGateway):
         with grpc.insecure_channel(f"127.0.0.1:{other.grpc_port}") as channel:
             elsewhere = grpc.StatusCode.FAILED_PRECONDITION
             self.fault(elsewhere, "gateway one", lambda: self.ask("GetJob", channel, id=job.id))
+
+    def test_who_only_watches_gives_way(self):
+        gateway = Gateway("--max_connections=3", "--workers=1")
+        self.addCleanup(gateway.close)
+        waiting = [json.loads(gateway.ask("POST", "/v1/jobs" + ENDLESS, endless_infill())[2])["id"] for _ in range(2)][1]
+
+        def connect():
+            channel = grpc.insecure_channel(f"127.0.0.1:{gateway.grpc_port}", [("grpc.use_local_subchannel_pool", 1)])
+            self.addCleanup(channel.close)
+            return channel
+
+        watching = [self.stream("WatchJob", connect(), id=waiting) for _ in range(3)]
+        for call in watching:
+            next(call)
+        time.sleep(1.1)
+        self.assertEqual(self.ask("GetJob", connect(), id=waiting).job.id, waiting)
+        with self.assertRaises(grpc.RpcError):
+            next(watching[0])
 
     def test_a_reader_that_goes_does_not_end_the_job(self):
         job = self.create(lines_of_infill(600), strategy={"name": "greedy"})

@@ -4,6 +4,7 @@ The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 """
 import gzip
 import http.client
+import json
 import lzma
 import os
 import re
@@ -234,6 +235,40 @@ class Time(unittest.TestCase):
         held[3].sendall(b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n")
         self.assertTrue(held[3].recv(100).startswith(b"HTTP/1.1 200"), "the others are not")
 
+    def test_who_only_watches_gives_way(self):
+        gateway = Gateway("--max_connections=4", "--workers=1")
+        self.addCleanup(gateway.close)
+        jobs = [json.loads(gateway.ask("POST", "/v1/jobs" + ENDLESS, endless_infill())[2])["id"] for _ in range(2)]
+        watchers = []
+        for name in 2 * jobs:  # the first job makes progress, the second one waits
+            watchers.append(socket.create_connection(("127.0.0.1", gateway.http_port), timeout=5))
+            self.addCleanup(watchers[-1].close)
+            watchers[-1].sendall(b"GET /v1/jobs/%s HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\n\r\n" % name.encode())
+            self.assertTrue(watchers[-1].recv(1000).startswith(b"HTTP/1.1 200"))
+        other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0), timeout=10)
+        self.addCleanup(other.close)
+        other.request("POST", "/v1/inspect", PART)
+        self.assertEqual(other.getresponse().status, 200)
+        operator = http.client.HTTPConnection("127.0.0.1", gateway.metrics_port)
+        self.addCleanup(operator.close)
+        operator.request("GET", "/metrics")
+        self.assertIn(b"\ntraverse_gateway_jobs 2\n", operator.getresponse().read(), "they go on")
+
+    def test_who_is_worked_for_does_not_give_way(self):
+        gateway = Gateway("--max_connections=2")
+        self.addCleanup(gateway.close)
+        body = endless_infill()
+        for accept in ("*/*", "text/event-stream"):
+            working = socket.create_connection(("127.0.0.1", gateway.http_port), timeout=5)
+            self.addCleanup(working.close)
+            working.sendall(b"POST /v1/gcode%s HTTP/1.1\r\nHost: x\r\nAccept: %s\r\nContent-Length: %d\r\n\r\n"
+                            % (ENDLESS.encode(), accept.encode(), len(body)) + body)
+            if accept != "*/*":
+                self.assertTrue(working.recv(1000).startswith(b"HTTP/1.1 200"))
+        time.sleep(1.1)
+        status, _, answer = gateway.ask("GET", "/healthz")
+        self.assertEqual((status, detail(answer)), (503, "too many connections"))
+
     def test_addresses_take_turns_with_new_connections(self):
         gateway = Gateway("--max_requests=2")
         self.addCleanup(gateway.close)
@@ -247,6 +282,19 @@ class Time(unittest.TestCase):
         late.request("POST", "/v1/inspect", PART)
         gateway.process.send_signal(signal.SIGCONT)
         self.assertEqual(late.getresponse().status, 200, "the second place, not one after fifty")
+
+    def test_connections_that_wait_for_their_turn_give_way(self):
+        gateway = Gateway("--max_connections=20", "--max_connections_per_address=15")
+        self.addCleanup(gateway.close)
+        gateway.process.send_signal(signal.SIGSTOP)
+        for i in range(90):
+            many = socket.create_connection(("127.0.0.1", gateway.http_port), source_address=(f"127.0.0.{3 + i % 3}", 0))
+            self.addCleanup(many.close)
+        late = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0))
+        self.addCleanup(late.close)
+        late.request("POST", "/v1/inspect", PART)
+        gateway.process.send_signal(signal.SIGCONT)
+        self.assertEqual(late.getresponse().status, 200)
 
     def test_the_last_places_are_for_callers_who_have_none(self):
         gateway = Gateway("--max_requests=4")

@@ -32,6 +32,8 @@ TEST(TurnsTest, OfTheAddressWithMostTheLastGoes) {
   turns.Add("2.2.2.2", 'X');
   turns.Add("2.2.2.2", 'Y');
   EXPECT_EQ(turns.most(), 2u);
+  EXPECT_EQ(turns.of("2.2.2.2"), 2u);
+  EXPECT_EQ(turns.of("3.3.3.3"), 0u);
   EXPECT_EQ(turns.TakeLastOfMost(), 'Y');
   EXPECT_EQ(turns.most(), 1u);
   EXPECT_EQ(turns.TakeLastOfMost(), 'a');

@@ -44,6 +44,26 @@ TEST(ReplyQueue, KeepsTextAndFilesInTheirOrder) {
   EXPECT_TRUE(queue.ended());
 }
 
+TEST(ReplyQueue, IsWorkedOnUntilItEndsUnlessItOnlyWatches) {
+  ReplyQueue whole([] {});
+  EXPECT_TRUE(whole.is_worked_on());
+  whole.Send({});
+  EXPECT_FALSE(whole.is_worked_on());
+
+  ReplyQueue streaming([] {});
+  streaming.Begin({});
+  streaming.Write("a", false);
+  EXPECT_TRUE(streaming.is_worked_on());
+  streaming.End();
+  EXPECT_FALSE(streaming.is_worked_on()) << "though there is something to send";
+
+  HttpResponse head;
+  head.only_watches = true;
+  ReplyQueue watching([] {});
+  watching.Begin(head);
+  EXPECT_FALSE(watching.is_worked_on());
+}
+
 TEST(ReplyQueue, TakesNoMoreTextThanThereIsRoomFor) {
   ReplyQueue queue([] {});
   queue.Begin({});
