@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/files/json_text.h"
 #include "client/report/table.h"
 
 namespace traverse::loadgen {
@@ -137,7 +138,7 @@ std::string LoadJson(const LoadHeading& heading, const LoadResult& result) {
     const auto example = result.example.find(code);
     if (example != result.example.end()) out["codes"][code]["example"] = example->second;
   }
-  return out.dump(1) + "\n";
+  return JsonText(out, 1) + "\n";
 }
 
 }  // namespace traverse::loadgen

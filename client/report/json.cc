@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/api/job_result.h"
+#include "client/files/json_text.h"
 #include "client/gtsp/tour.h"
 
 namespace traverse::report {
@@ -194,11 +195,6 @@ Json TourJson(const gtsp::Instance& instance, const JobResult& result) {
   return {{"rounded_length", tour.rounded_length}, {"points", std::move(points)}};
 }
 
-// File names may be any bytes; JSON is UTF-8.
-std::string Dump(const Json& json) {
-  return json.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::string StopName(v1::StopReason reason) {
@@ -208,34 +204,35 @@ std::string StopName(v1::StopReason reason) {
 }
 
 std::string RoutesJson(const InputJob& job, const JobRun& run, const GcodeRewrite* rewrite) {
-  std::string out = absl::StrFormat("{\"input\": %s, \"strategy\": %s, \"seed\": %d,\n",
-                                    Dump(job.name), Dump(run.result.summary.strategy()), run.seed);
+  std::string out =
+      absl::StrFormat("{\"input\": %s, \"strategy\": %s, \"seed\": %d,\n", JsonText(job.name),
+                      JsonText(run.result.summary.strategy()), run.seed);
   Json total = TotalJson(job, run.result, run.wall_seconds);
   if (rewrite != nullptr) StateAsWritten(*rewrite, total);
-  absl::StrAppendFormat(&out, " \"total\": %s,\n", Dump(total));
+  absl::StrAppendFormat(&out, " \"total\": %s,\n", JsonText(total));
   if (rewrite != nullptr) {
-    absl::StrAppendFormat(&out, " \"gcode\": %s,\n", Dump(RewriteJson(*rewrite)));
+    absl::StrAppendFormat(&out, " \"gcode\": %s,\n", JsonText(RewriteJson(*rewrite)));
   }
   if (job.gtsp != nullptr) {
-    absl::StrAppendFormat(&out, " \"tour\": %s,\n", Dump(TourJson(*job.gtsp, run.result)));
+    absl::StrAppendFormat(&out, " \"tour\": %s,\n", JsonText(TourJson(*job.gtsp, run.result)));
   }
   out += " \"layers\": [";
   // Layer by layer: a large job as one tree of values would need many times its text's memory.
   for (size_t i = 0; i < job.layers.size(); ++i) {
     out += i == 0 ? "\n  " : ",\n  ";
-    out += Dump(LayerJson(job, i, run.result.layers[i]));
+    out += JsonText(LayerJson(job, i, run.result.layers[i]));
   }
   out += "\n]}\n";
   return out;
 }
 
 std::string CompareJson(const InputJob& job, const std::vector<ComparedStrategy>& strategies) {
-  std::string out = absl::StrFormat("{\"input\": %s, \"runs\": [", Dump(job.name));
+  std::string out = absl::StrFormat("{\"input\": %s, \"runs\": [", JsonText(job.name));
   const char* divider = "\n";
   for (const ComparedStrategy& strategy : strategies) {
     for (const JobRun& run : strategy.runs) {
       absl::StrAppendFormat(&out, "%s{\"label\": %s, \"seed\": %d, \"routes\": %s}", divider,
-                            Dump(strategy.label), run.seed, RoutesJson(job, run));
+                            JsonText(strategy.label), run.seed, RoutesJson(job, run));
       divider = ",\n";
     }
   }

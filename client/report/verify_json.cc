@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "client/files/json_text.h"
+
 namespace traverse::report {
 namespace {
 
@@ -45,22 +47,19 @@ Json AllowJson(const VerifyPermissions& permissions) {
   return names;
 }
 
-std::string Text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::string VerifyJson(const std::string& original, const std::string& optimised,
                        const VerifyReport& report) {
   const std::string permissions = DescribePermissions(report.permissions);
-  std::string text = "{\"original\": " + Text(original) + ", \"optimised\": " + Text(optimised) +
-                     ",\n \"same\": " + (report.ok() ? "true" : "false") +
-                     ", \"policy\": " + Text(permissions.substr(0, permissions.find(','))) +
-                     ", \"allow\": " + Text(AllowJson(report.permissions)) + ",\n \"rules\": [\n";
+  std::string text =
+      "{\"original\": " + JsonText(original) + ", \"optimised\": " + JsonText(optimised) +
+      ",\n \"same\": " + (report.ok() ? "true" : "false") +
+      ", \"policy\": " + JsonText(permissions.substr(0, permissions.find(','))) +
+      ", \"allow\": " + JsonText(AllowJson(report.permissions)) + ",\n \"rules\": [\n";
   for (size_t rule = 0; rule < static_cast<size_t>(VerifyRule::kCount); ++rule) {
     if (rule > 0) text += ",\n";
-    text += "  " + Text(RuleJson(report, static_cast<VerifyRule>(rule)));
+    text += "  " + JsonText(RuleJson(report, static_cast<VerifyRule>(rule)));
   }
   return text + "\n ]}\n";
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/files/json_text.h"
 #include "client/gcode/parallel.h"
 #include "client/view/drawing/markup.h"
 #include "client/view/drawing/palette.h"
@@ -81,7 +82,7 @@ Json SceneJson(const Scene& scene, const std::string& made, size_t paths) {
 // JSON that neither ends a script element nor begins a comment in one, whatever its texts are.
 std::string ScriptSafe(const Json& json) {
   std::string out;
-  for (const char c : json.dump()) {
+  for (const char c : JsonText(json)) {
     if (c == '<') {
       out += "\\u003c";
     } else {

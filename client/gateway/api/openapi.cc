@@ -4,6 +4,7 @@
 
 #include "client/cli/flags/flags.h"
 #include "client/cli/flags/verify_flags.h"
+#include "client/files/json_text.h"
 #include "client/gateway/api/message_schemas.h"
 #include "client/gateway/api/parameters.h"
 #include "client/gateway/http/problem.h"
@@ -287,7 +288,7 @@ std::string DocumentText() {
         {"securitySchemes",
          {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}},
           {"key", {{"type", "apiKey"}, {"in", "header"}, {"name", "X-Api-Key"}}}}}}}};
-  return document.dump(1) + "\n";
+  return JsonText(document, 1) + "\n";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/files/json_text.h"
 
 namespace traverse::gateway {
 namespace {
@@ -53,7 +54,7 @@ std::string ReasonOf(int status) {
 std::string ProblemJson(int status, const std::string& detail) {
   const nlohmann::ordered_json json = {
       {"type", "about:blank"}, {"title", ReasonOf(status)}, {"status", status}, {"detail", detail}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json) + "\n";
 }
 
 HttpResponse Problem(int status, const std::string& detail) {
@@ -100,7 +101,7 @@ int HttpStatusOf(absl::StatusCode code) {
 
 HttpResponse Problem(int status, const std::string& detail, const ProblemDetails& details) {
   HttpResponse response = Problem(status, detail);
-  auto json = nlohmann::ordered_json::parse(std::get<std::string>(response.body));
+  auto json = ParseOrderedJson(std::get<std::string>(response.body));
   if (!details.code.empty()) json["code"] = details.code;
   for (const ProblemField& fault : details.faults) {
     json["details"].push_back({{"field", fault.field}, {"description", fault.description}});
@@ -111,7 +112,7 @@ HttpResponse Problem(int status, const std::string& detail, const ProblemDetails
                   [](const auto& header) { return header.first == "Retry-After"; });
     response.headers.emplace_back("Retry-After", std::to_string(*details.retry_after));
   }
-  response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  response.body = JsonText(json) + "\n";
   return response;
 }
 

@@ -8,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "client/files/json_text.h"
 #include "client/files/read_file.h"
 #include "client/gateway/api/machine_text.h"
 
@@ -128,7 +129,7 @@ const Printer* PrintersConfig::Find(const std::string& name) const {
 }
 
 absl::StatusOr<PrintersConfig> ParsePrinters(const std::string& json) {
-  const Json document = Json::parse(json, nullptr, /*allow_exceptions=*/false);
+  const Json document = ParseJson(json);
   if (!document.is_object()) return absl::InvalidArgumentError("not an object of JSON");
   PrintersConfig config;
   for (const auto& [key, value] : document.items()) {

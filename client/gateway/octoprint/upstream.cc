@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
+#include "client/files/json_text.h"
 #include "server/version.h"
 
 namespace traverse::gateway {
@@ -231,7 +232,7 @@ absl::StatusOr<UpstreamAnswer> PutFile(const Printer& printer, const std::string
 // Whether the print that `upload` asks for has begun. A Moonraker says so, and accepts files while
 // its printer is offline or busy; a PrusaLink does not say.
 bool PrintBegan(const PrinterUpload& upload, const UpstreamAnswer& answer) {
-  const Json said = Json::parse(answer.body, nullptr, false);
+  const Json said = ParseOrderedJson(answer.body);
   if (!said.is_object()) return upload.print;
   const auto started = said.find("print_started");
   return upload.print && (started == said.end() || (started->is_boolean() && started->get<bool>()));
@@ -247,7 +248,7 @@ void SayAsOctoPrint(const PrinterUpload& upload, UpstreamAnswer& answer) {
                      {"effectivePrint", PrintBegan(upload, answer)}};
   answer.status = 201;
   answer.content_type = "application/json";
-  answer.body = json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  answer.body = JsonText(json) + "\n";
 }
 
 }  // namespace
@@ -277,7 +278,7 @@ absl::StatusOr<UpstreamAnswer> AskVersion(const Printer& printer, const std::str
                      {"text", absl::StrCat("OctoPrint 1.9.0 (traverse-gateway ", kVersion,
                                            " before a Moonraker)")}};
   answer->content_type = "application/json";
-  answer->body = json.dump() + "\n";
+  answer->body = JsonText(json) + "\n";
   return answer;
 }
 

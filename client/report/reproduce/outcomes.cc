@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "client/files/json_text.h"
 #include "client/files/read_file.h"
 
 namespace traverse::report {
@@ -118,7 +119,7 @@ absl::StatusOr<OutcomeFile> OutcomeFile::Open(const std::string& name) {
   std::vector<std::string> lines = absl::StrSplit(*text, '\n');
   for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].empty()) continue;
-    const Json json = Json::parse(lines[i], nullptr, /*allow_exceptions=*/false);
+    const Json json = ParseJson(lines[i]);
     const bool fits = json.is_object() && json.contains("run") && json["run"].is_string() &&
                       json.contains("values") && json["values"].is_object() &&
                       json.contains("moves") && json["moves"].is_array();
@@ -140,7 +141,7 @@ absl::Status OutcomeFile::Add(const std::string& key, const RunOutcome& outcome)
   outcomes_[key] = outcome;
   if (name_.empty()) return absl::OkStatus();
   std::ofstream out(name_, std::ios::app);
-  out << ToJson(key, outcome).dump() << '\n' << std::flush;
+  out << JsonText(ToJson(key, outcome)) << '\n' << std::flush;
   return out ? absl::OkStatus()
              : absl::UnavailableError(absl::StrCat(name_, ": cannot be written"));
 }
