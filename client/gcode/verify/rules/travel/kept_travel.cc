@@ -60,7 +60,7 @@ bool SamePlace(const TraceMove& a, const TraceMove& b) {
 bool SameMove(const TraceMove& a, const TraceMove& b) {
   return a.kind == b.kind && a.firmware == b.firmware && SamePlace(a, b) &&
          std::abs(a.filament - b.filament) <= VerifyMachine::kSlack && a.feed == b.feed &&
-         a.acceleration == b.acceleration;
+         a.acceleration == b.acceleration && a.spiral == b.spiral;
 }
 
 // Of the segments between which `link` stands.
@@ -82,6 +82,7 @@ uint64_t DigestOfMoves(const std::vector<TraceMove>& moves) {
     add(move.filament);
     add(move.feed);
     add(move.acceleration);
+    add(move.spiral);
     add(uint64_t{2} * static_cast<uint64_t>(move.kind) + (move.firmware ? 1 : 0));
   }
   return digest;

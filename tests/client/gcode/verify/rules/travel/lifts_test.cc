@@ -273,15 +273,6 @@ TEST(VerifyLifts, OfASpiralHaveACenterAndADirectionOfTheOriginal) {
   }
 }
 
-TEST(VerifyLifts, BetweenTheSameTwoPointsTheSpiralIsTheSame) {
-  const std::string right = "G3 Z.6 I1.2 J0 P1";
-  const std::string up = "G3 Z.6 I0 J1.2 P1";
-  const std::string a = kHead + kOne + SpiralLine("1", right) + SpiralLine("5", up);
-  EXPECT_EQ(Broken(a, kHead + kOne + SpiralLine("1", up) + SpiralLine("5", up)), "lifts");
-  EXPECT_THAT(FirstMessage(a, kHead + kOne + SpiralLine("1", up) + SpiralLine("5", up)),
-              HasSubstr("b:12: the spiral lift between these two points has another center"));
-}
-
 // A lift of 0.4 mm to the next layer is one of 0.2 mm above it, but no lift within a layer is.
 TEST(VerifyLifts, WithinALayerAreNotThoseBetweenLayers) {
   const auto line = [](const char* z, const char* back, const char* from, const char* to) {

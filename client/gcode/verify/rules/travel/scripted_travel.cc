@@ -1,0 +1,131 @@
+// What travel does behind unknown lines, step by step: it retracts, rises, moves sideways, goes
+// down and primes as in the original, wherever it leads to.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kLevelMm = 0.003;
+constexpr double kShortestStepMm = 0.05;
+
+// One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
+struct TravelStep {
+  MoveKind kind = MoveKind::kTravel;
+  double z_mm = 0;
+  Micro filament = 0;
+  Micro feed = 0;
+  bool open = false;
+  uint64_t acceleration = 0;
+  uint32_t line = 0;
+  uint64_t spiral = 0;  // TraceMove::spiral
+
+  bool Like(const TravelStep& other) const {
+    return kind == other.kind && std::abs(z_mm - other.z_mm) <= kLevelMm && open == other.open &&
+           feed == other.feed && spiral == other.spiral &&
+           std::abs(filament - other.filament) <= VerifyMachine::kSlack;
+  }
+};
+
+bool IsNothing(const TraceMove& move) {
+  return !move.firmware && move.filament == 0 && move.z_from_mm == move.z_to_mm &&
+         move.length_mm() < kShortestStepMm;
+}
+
+// What the link to `path` does behind its last unknown line.
+std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path) {
+  std::vector<TravelStep> steps;
+  const TraceLink& link = chunk.links[path];
+  for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (IsNothing(move)) continue;
+    const bool wipes = move.kind == MoveKind::kWipe;
+    const Micro filament = wipes ? 0 : move.filament;
+    const TravelStep step{move.kind, move.z_to_mm,      filament,  move.feed,
+                          move.open, move.acceleration, move.line, move.spiral};
+    // A travel move may have more bends than before.
+    const bool goes_on =
+        !steps.empty() && steps.back().Like(step) && steps.back().acceleration == step.acceleration;
+    if (move.sideways() && goes_on) continue;
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+// How much farther the travel behind unknown lines leads than straight to its path.
+double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
+  const TraceLink& link = chunk.links[path];
+  double length = 0;
+  const TraceMove* first = nullptr;
+  for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (!move.sideways()) continue;
+    if (first == nullptr) first = &move;
+    length += move.length_mm();
+  }
+  straight_mm = first == nullptr ? 0 : DistanceOf(first->from, chunk.paths[path].start);
+  return length - straight_mm;
+}
+
+// No farther than twice as far as straight, and as much as it winds there.
+bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
+  constexpr double kSlackMm = 2;
+  double straight = 0;
+  const double had = ExcessTo(layer.was(), path_was, straight);
+  const double has = ExcessTo(layer.is(), path_is, straight);
+  return has > had + straight + kSlackMm;
+}
+
+bool IsTravel(const TravelStep& step) { return step.kind == MoveKind::kTravel; }
+
+bool Goes(const std::vector<TravelStep>& steps) {
+  return std::any_of(steps.begin(), steps.end(), IsTravel);
+}
+
+// Where filament moves alone, its acceleration is that of the path or of the travel.
+bool AreAlikeBehindScripts(const TravelStep& a, const TravelStep& b) {
+  const bool still = a.kind == MoveKind::kPriming || a.kind == MoveKind::kRetraction;
+  return a.Like(b) && (still || a.acceleration == b.acceleration);
+}
+
+}  // namespace
+
+void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
+  for (size_t i = 0; i < layer.section_count(); ++i) {
+    if (layer.Ended()) return;
+    const uint32_t was = layer.SectionWas(i).first_path;
+    const uint32_t is = layer.SectionIs(i).first_path;
+    if (!layer.was().links[was].scripted) continue;
+    const uint32_t before = layer.was().LineOf(layer.was().paths[was]);
+    const uint32_t behind = layer.is().LineOf(layer.is().paths[is]);
+    if (Winds(layer, was, is)) {
+      findings.breaks.push_back({VerifyRule::kBounds, before, behind, layer.index(),
+                                 "the travel behind unknown lines winds to this path"});
+    }
+    std::vector<TravelStep> had = StepsTo(layer.was(), was);
+    std::vector<TravelStep> has = StepsTo(layer.is(), is);
+    // To a path that begins where the head is, no way leads.
+    if (!Goes(had) || !Goes(has)) {
+      std::erase_if(had, IsTravel);
+      std::erase_if(has, IsTravel);
+    }
+    const auto [one, other] =
+        std::mismatch(had.begin(), had.end(), has.begin(), has.end(), AreAlikeBehindScripts);
+    if (one == had.end() && other == has.end()) continue;
+    findings.breaks.push_back(
+        {VerifyRule::kScripts, one == had.end() ? before : one->line,
+         other == has.end() ? behind : other->line, layer.index(),
+         absl::StrFormat("a %s behind unknown lines; the original has another %s there",
+                         other == has.end() ? "path" : MoveKindName(other->kind),
+                         one == had.end() ? "path" : MoveKindName(one->kind))});
+  }
+}
+
+}  // namespace traverse::gcode
