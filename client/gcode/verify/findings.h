@@ -174,9 +174,6 @@ struct RetractionCycle {
   uint32_t pulls = 0;        // how many moves pull, unless one of them is a wipe
   uint32_t pushes = 0;       // and how many push
   float late_mm = 0;         // of the travel, before the retraction
-  bool pushed_high = false;  // above what is printed on either side
-  bool pushed_low = false;   // below what is printed behind it
-  bool pulled_high = false;  // above what is printed on either side
   bool known = false;        // the original has all of its moves too
   uint64_t identity = 0;     // of all its moves
   uint32_t line = 0;

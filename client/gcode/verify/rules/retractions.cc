@@ -1,5 +1,6 @@
 // A retraction and its prime are a pair that the original has; never deeper, tool by tool; and the
-// prime comes where the travel ends.
+// prime comes where the travel ends. At which height they come follows from the order of steps
+// (travel/step_order.cc).
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,6 @@ namespace {
 constexpr double kSidewaysMm = 0.05;
 constexpr Micro kGrain = 100;       // pairs this near to each other are the same
 constexpr double kShareOdd = 0.01;  // if this share of the original's do something, it is usual
-constexpr double kHighMm = 0.02;
 constexpr float kLateMm = 0.25f;
 constexpr float kEarlyMm = 0.02f;
 constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
@@ -32,24 +32,14 @@ class CycleReader {
     open_ = false;
     travel_mm_ = 0;
     if (traced.first_move == traced.end_move) return;
-    // At the heights of what is printed before and after.
-    double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
-    double low = -1e9;
-    if (link < chunk.paths.size()) {
-      high = std::max(high, chunk.paths[link].z_mm + kHighMm);
-      low = chunk.paths[link].z_mm - kHighMm;
-    }
     const size_t first = cycles_.size();
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!move.in_print) continue;
       if (move.firmware ? move.kind == MoveKind::kRetraction : move.filament < 0) {
         Pull(move);
-        cycle_.pulled_high |= move.z_from_mm > high;
       } else if (move.firmware || (open_ && move.filament > 0)) {
         if (!open_) Begin(move);
-        cycle_.pushed_high |= move.z_from_mm > high;
-        cycle_.pushed_low |= move.z_to_mm < low;
         Push(move);
       } else if (move.kind == MoveKind::kTravel) {
         travel_mm_ += move.length_mm();
@@ -73,7 +63,6 @@ class CycleReader {
     for (size_t i = first; i < cycles_.size(); ++i) {
       RetractionCycle& cycle = cycles_[i];
       cycle.in_parts = cycle.idle = false;
-      cycle.pulled_high = cycle.pushed_high = cycle.pushed_low = false;
       cycle.late_mm = cycle.early_mm = 0;
       cycle.pulls = cycle.pushes = 0;
     }
@@ -251,9 +240,6 @@ class RetractionHabits {
  public:
   RetractionHabits(const Observations& was, const Observations& is)
       : cycles_(was.cycles),
-        may_push_high_(IsUsual(&RetractionCycle::pushed_high)),
-        may_push_low_(IsUsual(&RetractionCycle::pushed_low)),
-        may_pull_high_(IsUsual(&RetractionCycle::pulled_high)),
         may_be_in_parts_(IsUsual(&RetractionCycle::in_parts)),
         may_be_idle_(IsUsual(&RetractionCycle::idle) &&
                      CountIdle(is.cycles) <= CountIdle(was.cycles)) {
@@ -289,7 +275,7 @@ class RetractionHabits {
   const std::vector<RetractionCycle>& cycles_;
   PairTable pairs_;
   absl::flat_hash_set<uint64_t> whole_;
-  const bool may_push_high_, may_push_low_, may_pull_high_, may_be_in_parts_, may_be_idle_;
+  const bool may_be_in_parts_, may_be_idle_;
   float latest_mm_ = 0;
   // CuraEngine primes where other travel begins, and retracts again for that: [cycle.last].
   std::array<float, 2> earliest_mm_{};
@@ -322,9 +308,6 @@ std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
         "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
         cycle.early_mm, earliest_mm);
   }
-  if (cycle.pushed_high && !may_push_high_) return "primes above the layer";
-  if (cycle.pushed_low && !may_push_low_) return "primes below the layer";
-  if (cycle.pulled_high && !may_pull_high_) return "retracts above the layer";
   return "";
 }
 

@@ -139,8 +139,9 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
     NoteSeen(seen.step_orders, steps, chunk.moves[chunk.links[link].first_move].line,
              layer.index());
   };
-  // The first link comes from the start script, or follows a path of the chunk before.
-  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+  // The first link of all comes from the start script.
+  const uint32_t scripts = layer.index() == 0 ? 1 : 0;
+  for (uint32_t link = layer.first_path_was() + scripts; link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
     const std::string steps = StepsOf(layer.was(), link);
     add(layer.was(), link, steps, findings.was);
@@ -151,7 +152,7 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
       add(layer.was(), link, EarlyStepsOf(steps), findings.was);
     }
   }
-  for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
+  for (uint32_t link = layer.first_path_is() + scripts; link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     if (layer.is().links[link].scripted || layer.IsHidden(link) || AllKnown(layer, link)) continue;
     const std::string steps = StepsOf(layer.is(), link);

@@ -62,6 +62,37 @@ TEST(VerifyStepOrder, NothingComesEarlyToALayer) {
   EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "step_order");
 }
 
+TEST(VerifyStepOrder, FilamentMovesAtTheHeightOfWhatIsPrinted) {
+  const std::string travel = Lifted("X10 Y30");
+  const std::string above =
+      With(With(travel, "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n");
+  const std::string late =
+      With(With(travel, "G1 E-1 F2100\n", ""), "G1 Z.6 F9000\n", "G1 Z.6 F9000\nG1 E-1 F2100\n");
+  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, above)), "step_order");
+  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, late)), "step_order");
+  // A slicer may do so.
+  std::string all = kLifted;
+  for (const char* y : {"X10 Y10", "X10 Y20", "X10 Y30"}) {
+    all =
+        With(all, Lifted(y),
+             With(With(Lifted(y), "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n"));
+  }
+  const std::string other = With(all, Lifted("X10 Y40"),
+                                 With(With(Lifted("X10 Y40"), "G1 E1 F2100\n", ""), "G1 Z.2\n",
+                                      "G1 E1 F2100\nG1 Z.2 F9000\n"));
+  EXPECT_EQ(Ordered(kHead + all, kHead + other), "");
+}
+
+TEST(VerifyStepOrder, PrimesNotBelowTheLayer) {
+  const std::string rise = "G1 Z.4 F9000\n";
+  const std::string prime = "G1 E1 F2100\n";
+  const std::string line = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n";
+  const std::string travel = kHead + kTwo + "G1 E-1 F2100\n;LAYER_CHANGE\nG1 X0 Y0 F9000\n";
+  EXPECT_EQ(Ordered(travel + rise + prime + line, travel + rise + prime + line), "");
+  EXPECT_EQ(Ordered(travel + rise + prime + line, travel + prime + rise + line), "step_order");
+  EXPECT_EQ(Ordered(travel + prime + rise + line, travel + prime + rise + line), "");
+}
+
 TEST(VerifyStepOrder, WhatWaitsStillDoes) {
   const auto line = [](const std::string& from, const std::string& to, const std::string& waits) {
     return "G1 E-1 F2100\n" + waits + "G1 " + from + " F9000\nG1 E1 F2100\n" +
