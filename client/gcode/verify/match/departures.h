@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
@@ -14,13 +15,12 @@ inline bool Retracts(const TraceMove& move) {
 
 // That of `link`; nothing if there is none.
 inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
-  constexpr double kShortestMm = 0.015;
   constexpr double kLongestMm = 1.0;
   const TraceLink& traced = chunk.links[link];
   if (traced.end_move - traced.first_move < 2 || traced.scripted) return nullptr;
   const TraceMove& first = chunk.moves[traced.first_move];
   const bool leaves = first.kind == MoveKind::kTravel && first.open && first.in_print &&
-                      first.z_from_mm == first.z_to_mm && first.length_mm() >= kShortestMm &&
+                      first.z_from_mm == first.z_to_mm && first.length_mm() >= kLeastDepartureMm &&
                       first.length_mm() <= kLongestMm;
   return leaves && Retracts(chunk.moves[traced.first_move + 1]) ? &first : nullptr;
 }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "client/gcode/verify/match/slacks.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -17,7 +19,6 @@ constexpr double kUsualFilamentMm = 1.75;
 
 // Travel may be nearer to the outer wall that it leaves, so far behind its begin.
 constexpr double kLeavingMm = 1.1;
-constexpr double kOnWallMm = 0.05;
 
 double HalfWidthOf(const LayerShape& shape, double height_mm) {
   constexpr double kArea = std::numbers::pi * kUsualFilamentMm * kUsualFilamentMm / 4;
@@ -41,7 +42,7 @@ class HiddenTravel {
     if (shapes_.below.MeetsOpenWall(from, to, half_mm_)) return false;
     if (shapes_.above.MeetsOpenWall(from, to, half_mm_)) return false;
     const double length = DistanceOf(from, to);
-    const double leaving = shapes_.here.IsNearWall(left, kOnWallMm) ? kLeavingMm - behind_mm : 0;
+    const double leaving = shapes_.here.IsNearWall(left, kOnPathMm) ? kLeavingMm - behind_mm : 0;
     const int steps = std::max(static_cast<int>(std::ceil(length / kStepMm)), 1);
     for (int i = 0; i <= steps; ++i) {
       const double share = static_cast<double>(i) / steps;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/gcode/verify/match/laid_over.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/stated_settings.h"
 #include "client/gcode/verify/text.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr double kCellMm = 1.0;
 constexpr double kEndSlackMm = 0.25;    // of travel, where it may touch the walls that it joins
-constexpr double kOnPathMm = 0.05;      // a tail lies this near to its path
 constexpr double kLongestTailMm = 1.0;  // of one that leaves its path
 constexpr double kWallsApartMm = 0.9;   // walls of one outline lie no farther apart
 

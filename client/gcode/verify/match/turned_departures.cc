@@ -4,11 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "client/gcode/verify/match/slacks.h"
+
 namespace traverse::gcode {
 namespace {
-
-constexpr double kLongestDepartureMm = 1.25;
-constexpr double kSameTurnedEndMm = 0.02;
 
 // One of a path's starts, and which way its segments lead away from there: the first one and,
 // backwards, the last one.
@@ -79,7 +78,7 @@ bool TurnedDepartures::LeadsAway(uint32_t link) const {
   const auto end = ends_.find(link);
   if (end == ends_.end()) return false;
   const TraceMove* departs = ShortMoveFrom(is_, link);
-  return departs != nullptr && DistanceOf(departs->to, end->second) < kSameTurnedEndMm;
+  return departs != nullptr && DistanceOf(departs->to, end->second) < kSamePointMm;
 }
 
 }  // namespace traverse::gcode

@@ -12,6 +12,7 @@
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
@@ -20,15 +21,8 @@
 namespace traverse::gcode {
 namespace {
 
-// Travel around a wall may lie beyond all walls.
-constexpr double kSlackMm = 2;
-
-// Moves along a path may be longer by this much.
-constexpr double kAlongSlackMm = 0.05;
+// Moves along a path to another layer may be as long, whatever the original's.
 constexpr double kAlongToLayerMm = 1.0;
-
-// Rounded coordinates bend travel by less.
-constexpr double kLeastBendMm = 0.02;
 
 // How far the travel lies off the straight move that the two might be.
 double BendOf(const TraceMove& before, const TraceMove& behind) {
@@ -50,9 +44,9 @@ bool LeadsAroundAWall(const LayerPair& layer, const TraceMove& before, const Tra
 // is said elsewhere (travel_heights.cc).
 bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
                   const TraceMove& behind) {
-  constexpr double kLevelMm = 1e-4;
   const double printed = is.moves[is.links[link].first_move].z_from_mm;
-  return is.paths[link].z_mm < printed - kLevelMm && behind.z_from_mm < before.z_to_mm - kLevelMm;
+  return is.paths[link].z_mm < printed - kOneHeightMm &&
+         behind.z_from_mm < before.z_to_mm - kOneHeightMm;
 }
 
 // The short moves by which travel of the original leaves the paths of some layers, by where they
@@ -122,7 +116,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
     }
     if (SinksBetween(is, link, *last, move)) continue;
     const double bend = BendOf(*last, move);
-    if (bend <= kLeastBendMm) continue;
+    if (bend <= kSamePointMm) continue;
     if (LeadsAroundAWall(layer, *last, move)) {
       findings.is.detours.push_back(
           {last->line, layer.index(), static_cast<float>(ExcessOf(*last, move))});
@@ -143,7 +137,7 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
     const TraceMove& before = was.moves[m - 1];
     const TraceMove& move = was.moves[m];
     if (!before.sideways() || !move.sideways() || !before.in_print) continue;
-    const bool bends = BendOf(before, move) > kLeastBendMm;
+    const bool bends = BendOf(before, move) > kSamePointMm;
     if (!bends || !LeadsAroundAWall(layer, before, move)) continue;
     seen.detours.push_back(
         {before.line, layer.index(), static_cast<float>(ExcessOf(before, move))});
@@ -222,7 +216,7 @@ void CompareBounds(const Observations& was, const Observations& is, const RuleCo
     const Point p = far.at;
     const double off = std::max(
         {was.box.low.x - p.x, p.x - was.box.high.x, was.box.low.y - p.y, p.y - was.box.high.y});
-    if (off <= kSlackMm) continue;
+    if (off <= kLooseMm) continue;
     breaks.push_back(
         {VerifyRule::kBounds, 0, far.line, far.layer,
          absl::StrFormat("leads %.2f mm out of the area in which the original moves", off)});
@@ -245,7 +239,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     // The travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
     const double most = first ? std::max(longest, kAlongToLayerMm) : longest;
-    const uint32_t moves = MovesWithin(layer.is(), link, along.At(link), most + kAlongSlackMm);
+    const uint32_t moves = MovesWithin(layer.is(), link, along.At(link), most + kOnPathMm);
     // How travel leaves a loop is another rule (leaving_paths.cc), there of the layer before.
     const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.LeadsAway(link);
     const uint32_t skipped = std::max({tails.At(link), moves, departs ? 1u : 0u});

@@ -9,16 +9,13 @@
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kSameEndMm = 0.015;
-constexpr double kSameMoveMm = 0.02;
-constexpr double kGoesOnSlackMm = 0.05;
 
 // Whether travel from the path leads to the same point in both files, maybe of the next layer.
 bool LeadAlike(const LayerPair& layer, const Visit& visit) {
@@ -34,7 +31,7 @@ bool LeadAlike(const LayerPair& layer, const Visit& visit) {
 bool EndAlike(const LayerPair& layer, const Visit& visit) {
   const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
   const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
-  return DistanceOf(was, is) < kSameEndMm;
+  return DistanceOf(was, is) < kSamePointMm;
 }
 
 // The first sideways move of the link; nothing if there is none.
@@ -68,7 +65,7 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
     return std::none_of(along.begin(), along.end(), IsSideways);
   }
   const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
-  return first == nullptr || DistanceOf(departs->to, first->to) > kSameMoveMm;
+  return first == nullptr || DistanceOf(departs->to, first->to) > kSamePointMm;
 }
 
 bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
@@ -94,11 +91,10 @@ std::optional<double> RetractsAwayBy(const TraceChunk& chunk, uint32_t link) {
 // Travel from the same point of the path retracts in both files, but farther behind it than in the
 // original: by so much.
 double RetractsLaterBy(const LayerPair& layer, const Visit& visit) {
-  constexpr double kLaterMm = 0.25;
   const auto was = RetractsAwayBy(layer.was(), visit.path + 1);
   const auto is = RetractsAwayBy(layer.is(), visit.last_path + 1);
   if (!was || !is || layer.is().links[visit.last_path + 1].scripted) return 0;
-  return *is > *was + kLaterMm ? *is - *was : 0;
+  return *is > *was + kLateMm ? *is - *was : 0;
 }
 
 void NoteDeparture(const LayerPair& layer, uint32_t path, Observations& seen) {
@@ -176,22 +172,20 @@ double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> 
 // not to the next path. Nothing if it does not.
 const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   constexpr double kLeastMm = 0.1;
-  constexpr double kMostMm = 2;
-  constexpr double kBesideMm = 0.05;
   const TraceChunk& was = layer.was();
   const absl::Span<const Piece> pieces = layer.PiecesOf(path);
   const TraceLink& link = was.links[path + 1];
   const Point end = was.EndOf(was.paths[path]);
-  if (was.paths[path].size() < 3 || DistanceOf(was.paths[path].start, end) > kBesideMm)
+  if (was.paths[path].size() < 3 || DistanceOf(was.paths[path].start, end) > kOnPathMm)
     return nullptr;
   if (link.end_move - link.first_move < 2) return nullptr;
   const TraceMove& first = was.moves[link.first_move];
   const double length = first.length_mm();
   const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
-  if (!open || length <= kLeastMm || length > kMostMm) return nullptr;
-  if (DistanceOf(PointAlong(pieces, length), first.to) > kBesideMm) return nullptr;
+  if (!open || length <= kLeastMm || length > kLooseMm) return nullptr;
+  if (DistanceOf(PointAlong(pieces, length), first.to) > kOnPathMm) return nullptr;
   // A straight move off a small loop ends there too, but leads across it.
-  if (GoesOnMm(was, path, pieces) <= length - kGoesOnSlackMm) return nullptr;
+  if (GoesOnMm(was, path, pieces) <= length - kOnPathMm) return nullptr;
   const TraceMove* moves = was.moves.data();
   const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move, IsSideways);
   return leads_on ? &first : nullptr;
@@ -204,7 +198,7 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
   if (had == nullptr) return;
   const TraceChunk& is = layer.is();
   const double mm = GoesOnMm(is, visit.last_path, layer.PiecesOf(visit.path));
-  if (mm > had->length_mm() - kGoesOnSlackMm) return;
+  if (mm > had->length_mm() - kOnPathMm) return;
   const TraceLink& link = is.links[visit.last_path + 1];
   const uint32_t line = link.first_move < link.end_move ? is.moves[link.first_move].line
                                                         : is.segments[visit.last_segment].line;

@@ -5,14 +5,11 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kShortestMm = 0.015;
-constexpr double kSlackMm = 0.02;
-constexpr double kPokeMm = 0.05;
 
 // A move along a path of two decimals that is turned is longer by less.
 constexpr double kLengthSlackMm = 0.011;
@@ -76,8 +73,8 @@ const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known&
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) return nullptr;
     all_known &= known(move);
     const double off = DistanceOf(move.to, end);
-    if (left && off <= kSlackMm) return all_known ? nullptr : &move;
-    left |= off > kPokeMm;
+    if (left && off <= kSamePointMm) return all_known ? nullptr : &move;
+    left |= off > kOnPathMm;
   }
   return nullptr;
 }
@@ -123,12 +120,12 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
           {VerifyRule::kPathEnds, original, optimised, layer.index(), std::move(what)});
     };
     const bool same_end = visit.forward && visit.entry == 0;
-    if (had.length_mm < kShortestMm) {
+    if (had.length_mm < kLeastDepartureMm) {
       // Where the path ends elsewhere, it may cross the gap of a loop or lead back to a zigzag.
       const double gap = layer.Closed(visit.path)
-                             ? DistanceOf(was.EndOf(path), path.start) + kShortestMm
+                             ? DistanceOf(was.EndOf(path), path.start) + kLeastDepartureMm
                              : LoopGapMm(was, visit.path);
-      const bool longer = has.length_mm > (same_end ? kShortestMm : gap);
+      const bool longer = has.length_mm > (same_end ? kLeastDepartureMm : gap);
       const bool new_tail =
           longer && !has.known && has.feed == path.feed && !LeadsOn(is, visit.last_path, pieces);
       if (new_tail) {
@@ -138,7 +135,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
       }
       continue;
     }
-    if (has.length_mm < kShortestMm && !layer.Closed(visit.path) &&
+    if (has.length_mm < kLeastDepartureMm && !layer.Closed(visit.path) &&
         LeadsOn(was, visit.path, pieces)) {
       continue;
     }
@@ -156,7 +153,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     } else if (!layer.Closed(visit.path) && !LeadsOn(was, visit.path, pieces) &&
                GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
       report(had.line, has.line, "continues from the path to the other side, unlike the original");
-    } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
+    } else if (same_end && DistanceOf(has.end, had.end) > kSamePointMm) {
       report(had.line, has.line, "continues from the path to a different point from the original");
     }
   }

@@ -9,17 +9,15 @@
 #include <tuple>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kSidewaysMm = 0.05;
 constexpr Micro kGrain = 100;       // pairs this near to each other are the same
 constexpr double kShareOdd = 0.01;  // if this share of the original's do something, it is usual
-constexpr float kLateMm = 0.25f;
-constexpr float kEarlyMm = 0.02f;
 constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
 
 class CycleReader {
@@ -44,10 +42,10 @@ class CycleReader {
       } else if (move.kind == MoveKind::kTravel) {
         travel_mm_ += move.length_mm();
         cycle_.idle = false;
-        cycle_.in_parts |= open_ && cycle_.pushed > 0 && move.length_mm() > kSidewaysMm;
+        cycle_.in_parts |= open_ && cycle_.pushed > 0 && move.length_mm() > kLeastMoveMm;
         if (open_) cycle_.known &= layer_.IsKnown(move);
         // What came back before this, came back early.
-        if (move.open && move.length_mm() > kSidewaysMm) {
+        if (move.open && move.length_mm() > kLeastMoveMm) {
           const auto length = static_cast<float>(move.length_mm());
           for (size_t i = first; i < cycles_.size(); ++i) cycles_[i].early_mm += length;
           if (open_ && cycle_.pushed > 0) cycle_.early_mm += length;
@@ -303,7 +301,7 @@ std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
   if (cycle.idle && !may_be_idle_) return "retracts without travel";
   if (cycle.in_parts && !may_be_in_parts_) return "primes in several parts during the travel";
   if (const float earliest_mm = earliest_mm_[cycle.last ? 1 : 0];
-      cycle.early_mm > earliest_mm + kEarlyMm) {
+      cycle.early_mm > earliest_mm + kSamePointMm) {
     return absl::StrFormat(
         "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
         cycle.early_mm, earliest_mm);

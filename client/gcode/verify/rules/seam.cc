@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kSamePointMm = 0.05;
 constexpr double kSharpRadians = 0.49;
 
 Point PointOf(const TraceChunk& chunk, const TracePath& path, uint32_t index) {
@@ -39,7 +39,7 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
     const uint32_t begin = visit.forward ? visit.entry : (visit.entry + 1) % path.size();
     const bool balanced = context.permissions.policy == VerifyPermissions::Policy::kBalanced;
     const Point seam = PointOf(was, path, begin);
-    if (begin == 0 || (balanced && DistanceOf(seam, path.start) <= kSamePointMm)) continue;
+    if (begin == 0 || (balanced && DistanceOf(seam, path.start) <= kOnPathMm)) continue;
     if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
     findings.breaks.push_back(
         {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,

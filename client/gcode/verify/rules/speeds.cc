@@ -7,15 +7,13 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr float kLengthFactor = 2.0f;
-constexpr float kLengthSlackMm = 1.0f;
 
 // Unretracted travel is a kind of its own, after those of MoveKind.
 constexpr auto kOpenTravel = static_cast<size_t>(MoveKind::kCount);
@@ -102,7 +100,7 @@ bool IsTooLong(const TraceMove& move, const LongestTravels& longest) {
   const auto length = static_cast<float>(move.length_mm());
   const auto own = longest.find(move.acceleration);
   const float most = own == longest.end() ? 0 : own->second;
-  if (length <= most * kLengthFactor + kLengthSlackMm) return false;
+  if (!IsMuchLonger(length, most)) return false;
   return std::any_of(longest.begin(), longest.end(), [&](const auto& other) {
     return other.first != move.acceleration && other.second >= length;
   });
@@ -286,7 +284,7 @@ float LongestUnder(const Observations& was, uint64_t acceleration) {
 void CompareLengths(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const LongTravel& travel : is.long_travels) {
     const float longest = LongestUnder(was, travel.acceleration);
-    if (longest <= 0 || travel.length_mm <= longest * kLengthFactor + kLengthSlackMm) continue;
+    if (longest <= 0 || !IsMuchLonger(travel.length_mm, longest)) continue;
     breaks.push_back({VerifyRule::kSpeeds, 0, travel.line, travel.layer,
                       absl::StrFormat("travel of %.2f mm with an acceleration that the original "
                                       "does not use for travel longer than %.2f mm",

@@ -9,14 +9,13 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr float kOnPathMm = 0.05f;
-constexpr float kTurnedMm = 0.012f;  // rounded arcs lie this much nearer to one side
-constexpr double kUsualShare = 0.99;
+constexpr double kTurnedMm = 0.012;  // rounded arcs lie this much nearer to one side
 constexpr float kPullSlack = 1.02f;
 constexpr float kGentleShare = 0.5f;
 constexpr float kAmountSlackMm = 0.005f;
@@ -141,8 +140,9 @@ WipeDeviation DeviationOf(const Wipe& wipe, uint32_t original_line, const LayerP
           wipe.line,     original_line,  layer.index()};
 }
 
-// A bound that all but a few wipes of the original keep, but at least `least`.
-float Limit(std::vector<float> values, float least) {
+// A bound that all but a few wipes of the original keep, but at least `least_mm`.
+float Limit(std::vector<float> values, double least_mm) {
+  const auto least = static_cast<float>(least_mm);
   if (values.empty()) return least;
   const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());

@@ -11,15 +11,13 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kOffMm = 0.02;
-constexpr double kHigherMm = 0.003;
 
 // So many different ways between the same two segments are compared; no slicer has as many.
 constexpr size_t kMostAlike = 64;
@@ -29,9 +27,9 @@ bool GoesOn(const TraceMove& before, const TraceMove& move) {
   return before.kind == MoveKind::kTravel && move.kind == MoveKind::kTravel && !before.arc &&
          !move.arc && before.open == move.open && before.feed == move.feed &&
          before.acceleration == move.acceleration &&
-         std::abs(before.z_from_mm - move.z_to_mm) <= kHigherMm &&
-         std::abs(before.z_to_mm - move.z_to_mm) <= kHigherMm &&
-         DistanceToPiece(before.to, before.from, move.to) <= kOffMm;
+         std::abs(before.z_from_mm - move.z_to_mm) <= kHeightSlackMm &&
+         std::abs(before.z_to_mm - move.z_to_mm) <= kHeightSlackMm &&
+         DistanceToPiece(before.to, before.from, move.to) <= kSamePointMm;
 }
 
 std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
@@ -39,7 +37,7 @@ std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
   for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     const bool nothing = !move.firmware && move.filament == 0 && !move.arc &&
-                         move.z_from_mm == move.z_to_mm && move.length_mm() < kOffMm;
+                         move.z_from_mm == move.z_to_mm && move.length_mm() < kSamePointMm;
     if (nothing) continue;
     if (!moves.empty() && GoesOn(moves.back(), move)) {
       moves.back().to = move.to;
@@ -53,8 +51,8 @@ std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
 }
 
 bool SamePlace(const TraceMove& a, const TraceMove& b) {
-  return DistanceOf(a.to, b.to) <= kOffMm && DistanceOf(a.middle, b.middle) <= kOffMm &&
-         std::abs(a.z_to_mm - b.z_to_mm) <= kHigherMm;
+  return DistanceOf(a.to, b.to) <= kSamePointMm && DistanceOf(a.middle, b.middle) <= kSamePointMm &&
+         std::abs(a.z_to_mm - b.z_to_mm) <= kHeightSlackMm;
 }
 
 bool SameMove(const TraceMove& a, const TraceMove& b) {
@@ -114,7 +112,7 @@ bool LeadsBack(const TraceChunk& chunk, uint32_t path) {
   for (uint32_t k = 0; k <= traced.size() / 2; ++k) {
     const Point one = chunk.StartOf(traced, traced.first_segment + k);
     const Point other = chunk.segments[traced.end_segment - 1 - k].end;
-    if (DistanceOf(one, other) > kOffMm) return false;
+    if (DistanceOf(one, other) > kSamePointMm) return false;
   }
   return true;
 }

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -14,15 +15,9 @@ namespace traverse::gcode {
 namespace {
 
 constexpr float kLiftedMm = 0.015f;  // travel that rises this high is lifted
-constexpr float kHeightSlackMm = 0.003f;
-constexpr double kShareLifted = 0.99;
-constexpr float kLowMm = 0.5f;
 constexpr float kLowShare = 0.1f;
 // A slope of two stretches becomes a straight one, which rises later.
 constexpr float kLowFactor = 1.25f;
-constexpr double kUsualShare = 0.99;  // of the original's travel, for how low it may be
-constexpr double kShortestMm = 0.05;
-constexpr double kOneHeightMm = 1e-4;
 constexpr int64_t kSlopeSlackUm = 2;
 constexpr double kTellingMm = 2;  // slopes of shorter moves tell little
 
@@ -45,8 +40,8 @@ float LowLength(const LiftLog& log, const TravelProfile& travel, float lift) {
   float low = 0;
   for (uint32_t i = travel.first; i < travel.end; ++i) {
     const TravelProfile::Piece& piece = log.pieces[i];
-    const float from = piece.from_mm - lift + kHeightSlackMm;
-    const float to = piece.to_mm - lift + kHeightSlackMm;
+    const float from = piece.from_mm - lift + static_cast<float>(kHeightSlackMm);
+    const float to = piece.to_mm - lift + static_cast<float>(kHeightSlackMm);
     if (from >= 0 && to >= 0) continue;
     low += from < 0 && to < 0
                ? piece.length_mm
@@ -58,7 +53,8 @@ float LowLength(const LiftLog& log, const TravelProfile& travel, float lift) {
 bool EndsLow(const LiftLog& log, const TravelProfile& travel, float lift) {
   return std::any_of(log.pieces.begin() + travel.first, log.pieces.begin() + travel.end,
                      [lift](const TravelProfile::Piece& piece) {
-                       return piece.to_mm < lift - kHeightSlackMm && piece.length_mm > kLowMm;
+                       return piece.to_mm < lift - kHeightSlackMm &&
+                              piece.length_mm > kLeastTravelMm;
                      });
 }
 
@@ -75,7 +71,7 @@ struct Habit {
   bool lifts = false;
   float least_mm = 0;
   uint32_t least_line = 0;
-  float low_mm = kLowMm;
+  float low_mm = static_cast<float>(kLeastTravelMm);
   float low_share = kLowShare;
   bool may_end_low = false;
 };
@@ -92,7 +88,7 @@ Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
     }
   }
   habit.lifts = lifted > 0 &&
-                static_cast<double>(lifted) >= kShareLifted * static_cast<double>(travels.size());
+                static_cast<double>(lifted) >= kUsualShare * static_cast<double>(travels.size());
   if (!habit.lifts) return habit;
   std::vector<float> low_mm;
   std::vector<float> low_share;
@@ -105,8 +101,9 @@ Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
     if (EndsLow(log, travel, habit.least_mm)) ++end_low;
   }
   habit.may_end_low =
-      static_cast<double>(end_low) > (1 - kShareLifted) * static_cast<double>(lifted);
-  habit.low_mm = std::max(kLowMm, Usual(std::move(low_mm)) * kLowFactor);
+      static_cast<double>(end_low) > (1 - kUsualShare) * static_cast<double>(lifted);
+  habit.low_mm =
+      std::max(static_cast<float>(kLeastTravelMm), Usual(std::move(low_mm)) * kLowFactor);
   habit.low_share = std::max(kLowShare, Usual(std::move(low_share)) * 1.01f);
   return habit;
 }
@@ -175,7 +172,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
       if (slope > 0) seen.slopes.insert(slope);
     }
   }
-  if (length < kShortestMm) {
+  if (length < kLeastMoveMm) {
     seen.lifts.pieces.resize(travel.first);
     return;
   }
@@ -202,9 +199,8 @@ absl::Span<const TravelProfile> OfLayer(const std::vector<TravelProfile>& travel
 
 // Some slicers lift only in some layers: above a height, or below it.
 Habit HabitOfLayer(const LiftLog& log, const std::vector<TravelProfile>& travels, int64_t layer) {
-  constexpr size_t kFewest = 4;
   const absl::Span<const TravelProfile> own = OfLayer(travels, layer);
-  return own.size() < kFewest ? Habit() : HabitOf(log, own);
+  return own.size() < kFewestOfLayer ? Habit() : HabitOf(log, own);
 }
 
 // Whether the original has equally low travel between the same two points of the layer.
@@ -216,7 +212,7 @@ bool WasAsLow(const LiftLog& was, const LiftLog& is, const TravelProfile& travel
     if (before.ends != travel.ends) return false;
     const Height then = HeightOf(was, before);
     return now.apex_mm >= then.apex_mm - kHeightSlackMm &&
-           LowLength(is, travel, lift) <= LowLength(was, before, lift) + kShortestMm &&
+           LowLength(is, travel, lift) <= LowLength(was, before, lift) + kLeastMoveMm &&
            (!EndsLow(is, travel, lift) || EndsLow(was, before, lift));
   });
 }
@@ -225,7 +221,7 @@ bool WasAsLow(const LiftLog& was, const LiftLog& is, const TravelProfile& travel
 bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
                           const TravelProfile& travel) {
   const TravelProfile::Piece& piece = log.pieces[travel.first];
-  const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
+  const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLeastTravelMm);
   // Heights are rounded to micrometres.
   const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
   return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
@@ -243,7 +239,7 @@ bool SlopesAtOnce(const Observations& was, const LiftLog& log, const TravelProfi
   if (!BeginsWithUsualSlope(was, log, travel)) return false;
   TravelProfile behind = travel;
   ++behind.first;
-  return LowLength(log, behind, lift) <= kShortestMm;
+  return LowLength(log, behind, lift) <= kLeastMoveMm;
 }
 
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
@@ -265,7 +261,7 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const float low = LowLength(is.lifts, travel, habit.least_mm);
     const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, travel, habit.least_mm);
     const bool lies_low =
-        low > kLowMm &&
+        low > kLeastTravelMm &&
         (low > habit.low_mm || (low / height.length_mm > habit.low_share &&
                                 !SlopesAtOnce(was, is.lifts, travel, habit.least_mm))) &&
         !IsUsualSlope(was, is.lifts, travel);

@@ -9,20 +9,19 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kShortestTravelMm = 0.5;
 constexpr double kBentMm = 0.2;
 constexpr int64_t kManyBent = 20;  // one in
 constexpr double kBinMm = 0.1;
 constexpr uint32_t kBins = 1000;
 
 // So many retracted ones make a habit.
-constexpr int64_t kEnoughOfLayer = 4;
 constexpr int64_t kEnoughOfPrint = 20;
 constexpr int64_t kOneIn = 100;  // what is as rare as this is no habit
 constexpr double kUsualThresholdMm = 1.5;
@@ -57,7 +56,7 @@ Travel TravelIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, 
   const Point from = chunk.EndOf(chunk.paths[link - 1]);
   const Point start = chunk.paths[link].start;
   travel.length_mm = DistanceOf(from, start);
-  if (travel.length_mm < kShortestTravelMm) return {};
+  if (travel.length_mm < kLeastTravelMm) return {};
   const bool crosses = layer.CrossesOuterWall(from, start);
   travel.bent = length > travel.length_mm + kBentMm;
   travel.kind = 2 * static_cast<uint32_t>(to) + (crosses ? 1u : 0u);
@@ -196,7 +195,7 @@ void CompareOpenHabits(const Observations& was, const Observations& is, const Ru
     if (added) habit = HabitBeyond(was, travel.kind, threshold);
     const bool of_print =
         habit.retracted >= kEnoughOfPrint && habit.open * kOneIn <= habit.retracted;
-    const bool of_layer = travel.retracted_in_layer >= kEnoughOfLayer &&
+    const bool of_layer = travel.retracted_in_layer >= kFewestOfLayer &&
                           BinOf(travel.longest_in_layer_mm) <= threshold;
     if (!of_print && !of_layer) continue;
     breaks.push_back(

@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kSlackMm = 0.01;
 
 struct OpenTravel {
   double length_mm = 0;
@@ -57,7 +56,7 @@ void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings) {
   size_t more = is.size() > was.size() ? is.size() - was.size() : 0;
   for (const OpenTravel& travel : is) {
     if (travel.known) continue;
-    if (longest != was.end() && travel.length_mm > longest->length_mm + kSlackMm) {
+    if (longest != was.end() && travel.length_mm > longest->length_mm + kSamePointMm) {
       findings.breaks.push_back(
           {VerifyRule::kOpenTravels, longest->line, travel.line, layer.index(),
            absl::StrFormat("travel of %.2f mm crosses an outer wall without a retraction; the "

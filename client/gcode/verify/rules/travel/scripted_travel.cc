@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kLevelMm = 0.003;
-constexpr double kShortestStepMm = 0.05;
 
 // One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
 struct TravelStep {
@@ -28,15 +26,15 @@ struct TravelStep {
   uint64_t spiral = 0;  // TraceMove::spiral
 
   bool Like(const TravelStep& other) const {
-    return kind == other.kind && std::abs(z_mm - other.z_mm) <= kLevelMm && open == other.open &&
-           feed == other.feed && spiral == other.spiral &&
+    return kind == other.kind && std::abs(z_mm - other.z_mm) <= kHeightSlackMm &&
+           open == other.open && feed == other.feed && spiral == other.spiral &&
            std::abs(filament - other.filament) <= VerifyMachine::kSlack;
   }
 };
 
 bool IsNothing(const TraceMove& move) {
   return !move.firmware && move.filament == 0 && move.z_from_mm == move.z_to_mm &&
-         move.length_mm() < kShortestStepMm;
+         move.length_mm() < kLeastMoveMm;
 }
 
 // What the link to `path` does behind its last unknown line.
@@ -76,11 +74,10 @@ double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
 
 // No farther than twice as far as straight, and as much as it winds there.
 bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
-  constexpr double kSlackMm = 2;
   double straight = 0;
   const double had = ExcessTo(layer.was(), path_was, straight);
   const double has = ExcessTo(layer.is(), path_is, straight);
-  return has > had + straight + kSlackMm;
+  return has > had + straight + kLooseMm;
 }
 
 bool IsTravel(const TravelStep& step) { return step.kind == MoveKind::kTravel; }

@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
-
-// Heights are written with three decimals.
-constexpr double kSlopeMm = 0.003;
-
-// Shorter moves are segments that rounding left no filament of.
-constexpr double kRoundedMm = 0.05;
 
 // One letter a step; 0: it does not count.
 char StepOf(const TraceMove& move) {
@@ -36,10 +31,10 @@ char StepOf(const TraceMove& move) {
     default:
       break;
   }
-  if (move.z_to_mm > move.z_from_mm + kSlopeMm) return 'u';
-  if (move.z_to_mm < move.z_from_mm - kSlopeMm) return 'd';
+  if (move.z_to_mm > move.z_from_mm + kHeightSlackMm) return 'u';
+  if (move.z_to_mm < move.z_from_mm - kHeightSlackMm) return 'd';
   if (!move.open) return 't';
-  return move.length_mm() < kRoundedMm ? 0 : 'o';
+  return move.length_mm() < kLeastMoveMm ? 0 : 'o';
 }
 
 // The steps of `link`, several alike as one. The short moves by which it leaves a path, and others

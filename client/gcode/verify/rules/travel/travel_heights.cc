@@ -9,18 +9,14 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kSlackMm = 0.003;
-constexpr double kShortestMm = 0.05;
-constexpr double kLevelMm = 1e-4;
-constexpr float kDescentSlackMm = 0.5f;
-
 TravelRise RiseOf(double from, double to) {
-  if (std::abs(to - from) <= kLevelMm) return TravelRise::kLevel;
+  if (std::abs(to - from) <= kOneHeightMm) return TravelRise::kLevel;
   return to > from ? TravelRise::kUp : TravelRise::kDown;
 }
 
@@ -58,8 +54,9 @@ class LinkHeights {
     if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts_.times > 1) {
       lifts_.line = move.line;
     }
-    sinks_ |= move.z_to_mm < move.z_from_mm - kSlackMm;
-    if (lowest_.rise != TravelRise::kDown && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
+    sinks_ |= move.z_to_mm < move.z_from_mm - kHeightSlackMm;
+    if (lowest_.rise != TravelRise::kDown && sinks_ &&
+        move.z_to_mm > move.z_from_mm + kHeightSlackMm) {
       sinks_ = false;
       ++lifts_.dips;
       lifts_.line = move.line;
@@ -85,9 +82,9 @@ class LinkHeights {
         deepest_.line = move.line;
       }
     }
-    if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) return;
+    if (move.kind != MoveKind::kTravel || move.length_mm() < kLeastMoveMm) return;
     const auto length = static_cast<float>(move.length_mm());
-    if (move.z_to_mm < move.z_from_mm - kSlackMm && length > descent_.length_mm) {
+    if (move.z_to_mm < move.z_from_mm - kHeightSlackMm && length > descent_.length_mm) {
       descent_.length_mm = length;
       descent_.line = move.line;
     }
@@ -144,7 +141,7 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
     if (move.above_mm < deepest.above_mm) deepest = move;
   }
   for (const LowestTravel& move : is.deepest) {
-    if (move.above_mm >= deepest.above_mm - kSlackMm) continue;
+    if (move.above_mm >= deepest.above_mm - kHeightSlackMm) continue;
     breaks.push_back({VerifyRule::kLifts, deepest.line, move.line, move.layer,
                       absl::StrFormat("the head descends %.3f mm below the layer; in the original "
                                       "%.3f mm at most",
@@ -189,7 +186,7 @@ void CompareDescents(const Observations& was, const Observations& is,
   }
   for (const Descent& descent : is.descents) {
     const Descent& longest = known[static_cast<size_t>(descent.rise)];
-    if (descent.length_mm <= longest.length_mm + kDescentSlackMm) continue;
+    if (descent.length_mm <= longest.length_mm + kLeastTravelMm) continue;
     breaks.push_back(
         {VerifyRule::kLifts, longest.line, descent.line, descent.layer,
          absl::StrFormat("the head descends over %.2f mm of travel; in the original over "
@@ -202,7 +199,7 @@ void CompareFirstTravel(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks) {
   const auto compare = [&breaks](const ExtremePoint& had, const ExtremePoint& has, double side,
                                  const char* leads) {
-    if (had.line == 0 || has.line == 0 || side * (has.z_mm - had.z_mm) <= kSlackMm) return;
+    if (had.line == 0 || has.line == 0 || side * (has.z_mm - had.z_mm) <= kHeightSlackMm) return;
     breaks.push_back({VerifyRule::kLifts, had.line, has.line, has.layer,
                       absl::StrFormat("travel from the start script %s to Z%.3f; in the original "
                                       "to Z%.3f",
@@ -237,7 +234,7 @@ Sinking SinkingTo(const TraceChunk& chunk, uint32_t path) {
   const TraceLink& link = chunk.links[path];
   Sinking travel;
   if (link.first_move == link.end_move || !chunk.moves[link.first_move].in_print) return travel;
-  const double level = chunk.moves[link.first_move].z_from_mm - kSlackMm;
+  const double level = chunk.moves[link.first_move].z_from_mm - kHeightSlackMm;
   if (chunk.paths[path].z_mm >= level) return travel;
   for (uint32_t m = link.first_move; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
@@ -256,8 +253,8 @@ void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
     if (layer.Ended()) return;
     const Sinking was = SinkingTo(layer.was(), layer.SectionWas(i).first_path);
     const Sinking is = SinkingTo(layer.is(), layer.SectionIs(i).first_path);
-    if (!was.sinks || !is.sinks || DistanceOf(is.at, was.at) <= kShortestMm ||
-        is.low_mm <= was.low_mm + kDescentSlackMm) {
+    if (!was.sinks || !is.sinks || DistanceOf(is.at, was.at) <= kLeastMoveMm ||
+        is.low_mm <= was.low_mm + kLeastTravelMm) {
       continue;
     }
     findings.breaks.push_back(
@@ -290,7 +287,7 @@ void CompareHeights(const Observations& was, const Observations& is, std::vector
   }
   for (const LowestTravel& travel : is.lowest) {
     const LowestTravel& lowest = known[static_cast<size_t>(travel.rise)];
-    if (travel.above_mm >= lowest.above_mm - kSlackMm) continue;
+    if (travel.above_mm >= lowest.above_mm - kHeightSlackMm) continue;
     breaks.push_back(
         {VerifyRule::kLifts, lowest.line, travel.line, travel.layer,
          absl::StrFormat("travel is %.3f mm below the paths that it connects; in the original "

@@ -7,30 +7,21 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-// If slicers retract by what travel crosses, travel that crosses nothing may become a little
-// longer.
-constexpr float kOpenSlackMm = 1.0f;
-constexpr float kOpenFactor = 2.0f;
-constexpr float kShortestMm = 0.5f;
-constexpr float kToLayerSlackMm = 0.05f;
-constexpr double kSamePointMm = 0.01;
-constexpr double kLeastTurnMm = 0.05;
-constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
 
 // The move with which the head goes down to a path that lies lower than the one before: it has to
 // do so where nothing stands in its way (travel_heights.cc). Nothing if the path does not.
 const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
-  constexpr double kLevelMm = 1e-4;
   const TraceLink& traced = chunk.links[link];
   if (traced.first_move == traced.end_move || link >= chunk.paths.size()) return nullptr;
-  const double printed = chunk.moves[traced.first_move].z_from_mm - kLevelMm;
+  const double printed = chunk.moves[traced.first_move].z_from_mm - kOneHeightMm;
   if (chunk.paths[link].z_mm >= printed) return nullptr;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     if (chunk.moves[m].z_to_mm < printed) return &chunk.moves[m];
@@ -54,7 +45,7 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
     // The next path may begin where the one before it ends and a short move leads away.
-    const double least_turn = last == first ? kShortestMm : kLeastTurnMm;
+    const double least_turn = last == first ? kLeastTravelMm : kLeastMoveMm;
     travel.turns_back |= last != nullptr && move.length_mm() > least_turn &&
                          DistanceOf(move.to, last->from) < kSamePointMm;
     last = &move;
@@ -114,22 +105,22 @@ void CompareTravelsToLayers(const Observations& was, const Observations& is,
   float shortest_retracted = 1e9f;
   float longest_open = 0;
   for (const TravelLength& travel : was.travels_to_layers) {
-    any_open |= travel.open_mm > kShortestMm;
+    any_open |= travel.open_mm > kLeastTravelMm;
     if (travel.retracted_to_layer)
       shortest_retracted = std::min(shortest_retracted, travel.length_mm);
     if (!travel.retracts) longest_open = std::max(longest_open, travel.open_mm);
   }
   for (const TravelLength& travel : is.travels_to_layers) {
-    if (travel.open_mm > kShortestMm && !any_open) {
+    if (travel.open_mm > kLeastTravelMm && !any_open) {
       breaks.push_back({VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
                         "travel to another layer without a retraction, as the original has none"});
       continue;
     }
-    if (travel.open_mm <= kToLayerSlackMm) continue;
+    if (travel.open_mm <= kLeastMoveMm) continue;
     const bool on_shorter =
-        travel.was_retracted && travel.open_mm > shortest_retracted - kToLayerSlackMm;
-    const bool none_as_long = travel.was_retracting && !travel.retracts &&
-                              travel.open_mm > longest_open + kToLayerSlackMm;
+        travel.was_retracted && travel.open_mm > shortest_retracted - kLeastMoveMm;
+    const bool none_as_long =
+        travel.was_retracting && !travel.retracts && travel.open_mm > longest_open + kLeastMoveMm;
     if (on_shorter || none_as_long) {
       breaks.push_back(
           {VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
@@ -167,13 +158,13 @@ void CompareTravelLengths(const Observations& was, const Observations& is,
                         "travel returns to where it was, as none does in the original"});
       continue;
     }
-    if (travel.open_mm > open.open_mm * kOpenFactor + kOpenSlackMm) {
+    if (IsMuchLonger(travel.open_mm, open.open_mm)) {
       breaks.push_back({VerifyRule::kOpenTravels, open.line, travel.line, travel.layer,
                         absl::StrFormat("travel of %.2f mm without a retraction; the longest such "
                                         "travel in the original has %.2f mm",
                                         travel.open_mm, open.open_mm)});
     }
-    if (travel.excess_mm > winding.excess_mm * kWindingFactor + kWindingSlackMm) {
+    if (travel.excess_mm > winding.excess_mm * kWindingFactor + kLooseMm) {
       breaks.push_back(
           {VerifyRule::kBounds, winding.line, travel.line, travel.layer,
            absl::StrFormat(
