@@ -37,6 +37,14 @@ std::string PolicyText(v1::Policy policy) {
   return absl::AsciiStrToLower(name.substr(std::min(kPrefix, name.size())));
 }
 
+// Of an archive each plate has a line. A header longer than this is refused by many clients, and a
+// line of the log would be as long as the caller likes.
+std::string Shortened(const std::string& text) {
+  constexpr size_t kMostBytes = 2000;
+  if (text.size() <= kMostBytes) return text;
+  return text.substr(0, text.rfind(';', kMostBytes)).substr(0, kMostBytes) + "; ...";
+}
+
 }  // namespace
 
 void RecordFile(Core& core, const FileRecord& record, const absl::Status& status,
@@ -52,21 +60,10 @@ void RecordFile(Core& core, const FileRecord& record, const absl::Status& status
                            {"seconds", absl::StrFormat("%.3f", record.seconds)},
                            {"outcome", outcome}};
   if (!status.ok()) fields.emplace_back("message", std::string(status.message()));
-  if (status.ok() && summary != nullptr) fields.emplace_back("message", summary->text());
+  if (status.ok() && summary != nullptr) fields.emplace_back("message", Shortened(summary->text()));
   core.files.log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kWarning, "file",
                         fields);
 }
-
-namespace {
-
-// A header longer than this is refused by many clients; of an archive each plate has a line.
-std::string Shortened(const std::string& text) {
-  constexpr size_t kMostBytes = 2000;
-  if (text.size() <= kMostBytes) return text;
-  return text.substr(0, text.rfind(';', kMostBytes)).substr(0, kMostBytes) + "; ...";
-}
-
-}  // namespace
 
 std::vector<std::pair<std::string, std::string>> SummaryHeaders(const v1::RewriteSummary& summary) {
   const auto mm = [](double value) { return absl::StrFormat("%.2f", value); };

@@ -4,6 +4,7 @@ The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 """
 import base64
 import gzip
+import io
 import json
 import lzma
 import os
@@ -12,6 +13,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zipfile
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
 from gateway_process import SAMPLE, TESTS, Gateway, detail, events, form, lines_of_infill, optimised_by_command, square_wall
@@ -80,6 +82,18 @@ class Files(unittest.TestCase):
         self.assertEqual(status, 200, body[:300])
         self.assertRegex(json.loads(body)["text"],
                          r"least rest of an island [\d.]+ -> [\d.]+ s \([\d.]+ s are enough\)")
+
+    def test_the_summary_of_many_plates_is_cut(self):
+        archive = io.BytesIO()
+        with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+            for plate in range(1, 31):
+                file.writestr(f"Metadata/plate_{plate}.gcode", lines_of_infill(2))
+        status, headers, body = self.post("/v1/gcode?policy=free", archive.getvalue())
+        self.assertEqual(status, 200, body[:300])
+        self.assertTrue(headers["traverse-summary"].endswith("; ..."))
+        self.assertLess(max(len(value) for value in headers.values()), 2048)
+        with open(self.gateway.log.name, encoding="utf-8") as log:
+            self.assertLess(max(len(line) for line in log), 3000)
 
     def test_events_tell_of_progress_and_bring_the_file(self):
         status, headers, body = self.post("/v1/gcode?report=true", PART, {"Accept": "text/event-stream"})
