@@ -15,9 +15,10 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kCellMm = 1.0;
-constexpr double kEndSlackMm = 0.25;    // of travel, where it may touch the walls that it joins
-constexpr double kLongestTailMm = 1.0;  // of one that leaves its path
-constexpr double kWallsApartMm = 0.9;   // walls of one outline lie no farther apart
+constexpr double kEndSlackMm = 0.25;       // of travel, where it may touch the walls that it joins
+constexpr double kLongestTailMm = 1.0;     // of one that leaves its path
+constexpr double kStraightCosine = 0.996;  // of 5 degrees
+constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
 
 // The value of `; NAME = VALUE` in `text`.
 std::string_view Setting(std::string_view text, std::string_view name) {
@@ -35,13 +36,14 @@ double FlowOf(const TracePath& path) {
   return path.length_mm > 0 ? path.filament_mm / path.length_mm : 0;
 }
 
+// Of a very short move rounding tells no more than that it does not lead back.
 bool GoesStraightOn(const TraceMove& move, const Piece& last) {
+  const double length = move.length_mm();
   const double before = DistanceOf(last.a, last.b);
-  if (before <= 0) return false;
-  const double reach = kLongestTailMm / before;
-  const Point on{last.b.x + (last.b.x - last.a.x) * reach,
-                 last.b.y + (last.b.y - last.a.y) * reach};
-  return DistanceToPiece(move.to, last.b, on) <= kOnPathMm;
+  if (length <= 0 || before <= 0) return false;
+  const double dot = (move.to.x - move.from.x) * (last.b.x - last.a.x) +
+                     (move.to.y - move.from.y) * (last.b.y - last.a.y);
+  return dot >= (length < kLeastDepartureMm ? 0 : kStraightCosine * length * before);
 }
 
 // The end of the moves that coast in the link behind `path`, whose last line is `last`: no faster

@@ -90,6 +90,19 @@ TEST(VerifyPathEnds, AreNoTravelsToTheNextPath) {
   EXPECT_EQ(Broken(a, With(a, "G1 X8.92 Y.03\n", "")), "same_print");
 }
 
+// As fast as the path, but off to one side, to where the next path begins: an example for travel.
+TEST(VerifyPathEnds, AShortSlowMoveToOneSideIsTravel) {
+  const auto line = [](const std::string& from, const std::string& to) {
+    return "G1 " + from + "\nG1 " + to + " E.3 F1800\n";
+  };
+  const std::string type = kHead + ";TYPE:Internal infill\n";
+  const std::string gap = line("X0 Y0 F9000", "X9 Y0") + line("X9.07 Y.04", "X9.07 Y9");
+  const std::string first = line("X20 Y0 F9000", "X29 Y0");
+  const std::string apart = line("X40 Y0 F9000", "X49 Y0");
+  const std::string a = type + gap + first + apart + line("X29.5 Y.4 F9000", "X29.5 Y9");
+  EXPECT_EQ(Broken(a, type + gap + first + line("X29.5 Y.4", "X29.5 Y9") + apart), "");
+}
+
 // At its own feed rate, which no way has; the travel to the next layer begins with it.
 TEST(VerifyPathEnds, AreNoTravelsAtTheEndOfALayer) {
   const std::string one = With(Tailed("X0 Y0", "X9 Y0", "X9.2 Y0"), "F1800", "F1556");
