@@ -130,7 +130,7 @@ TEST(LookAhead, BoundsAndProofsHoldForEachLayerAlone) {
 TEST(LookAhead, MakesNoJobLongerThanGreedyOrThanOneLayerAfterTheOther) {
   int dearer_than_need_be = 0;
   int shorter = 0;
-  for (uint64_t seed = 1; seed <= 40; ++seed) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     std::vector<JobLayer> layers;
     for (uint64_t i = 0; i < 5; ++i) {
@@ -148,8 +148,8 @@ TEST(LookAhead, MakesNoJobLongerThanGreedyOrThanOneLayerAfterTheOther) {
       dearer_than_need_be += outcome.lower_bound.value_or(outcome.cost) < outcome.cost - 1e-3;
     }
   }
-  EXPECT_GT(shorter, 20);
-  EXPECT_GT(dearer_than_need_be, 10);
+  EXPECT_GT(shorter, 10);
+  EXPECT_GT(dearer_than_need_be, 5);
 }
 
 // From 0, greedy does 1 and then -2, for 4, and the next layer is 42 from there. The other way
@@ -211,7 +211,7 @@ TEST(LookAhead, IsNeverLongerThanOneLayerAfterTheOtherOnHexagonalGrids) {
 TEST(LookAhead, SavesTravelOverManyJobs) {
   double blind = 0;
   double seeing = 0;
-  for (uint64_t seed = 1; seed <= 20; ++seed) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
     const std::vector<JobLayer> layers = RandomLayers(
         seed, 12, {.shape = testing::PlanShape::kSequential, .min_paths = 4, .max_paths = 12});
     blind += Total(RunJob(layers, {.more_follows = false}));
@@ -222,7 +222,7 @@ TEST(LookAhead, SavesTravelOverManyJobs) {
 }
 
 TEST(LookAhead, RoutesDependNeitherOnThreadsNorOnWhenLayersCome) {
-  for (uint64_t seed = 1; seed <= 3; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const std::vector<JobLayer> layers = RandomLayers(seed, 24);
     for (const bool cleaning : {false, true}) {

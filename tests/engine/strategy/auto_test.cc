@@ -74,7 +74,7 @@ TEST(Auto, SpendsMuchEffortOnManyWalks) {
   double by_many = 0;
   for (uint64_t seed = 1; seed <= 2; ++seed) {
     OwnedProblem owned =
-        RandomProblem(seed, {.shape = PlanShape::kFlatBefore, .min_paths = 80, .max_paths = 80});
+        RandomProblem(seed, {.shape = PlanShape::kFlatBefore, .min_paths = 50, .max_paths = 50});
     const auto cost = [&owned](const char* effort) {
       Budget budget;
       const Solution solution =
