@@ -471,15 +471,17 @@ def commands(side, first, end):
 
 
 def low_travel(side):
-    """(low, all, a line) of retracted travel of 2 mm and more; low is what is no higher than what was printed last."""
-    low, count, line, height = 0, 0, 0, 0.0
+    """(low, all, a line) of retracted travel of 2 mm and more within a layer; low is what is no higher than what was
+    printed last. On the way to the next layer the head is as high as that."""
+    low, count, line, height, travel = 0, 0, 0, 0.0, []
     for move in side.moves:
         if move.deposits:
-            height = max(move.z0, move.z1)
+            if abs(max(move.z0, move.z1) - height) < 0.01:
+                lows = [other.line for other in travel if min(other.z0, other.z1) < height + 0.05]
+                low, count, line = low + len(lows), count + len(travel), lows[-1] if lows else line
+            height, travel = max(move.z0, move.z1), []
         elif move.length > 2 and move.retracted > 0.02 and move.e == 0:
-            count += 1
-            if min(move.z0, move.z1) < height + 0.05:
-                low, line = low + 1, move.line
+            travel.append(move)
     return low, count, line
 
 
@@ -491,14 +493,15 @@ def lifts(before, after, options):
 
 
 def wiped(side):
-    return sum(1 for a, b in zip(side.moves, side.moves[1:]) if a.e < 0 < a.length and not (b.e < 0 < b.length))
+    moves = [move for move in side.moves if move.length or move.e]  # a line may set the speed alone
+    return sum(1 for a, b in zip(moves, moves[1:]) if a.e < 0 < a.length and not (b.e < 0 < b.length))
 
 
 def wipes(before, after, options):
     """Paths that were wiped stay so, unless that is given away."""
     old, new = wiped(before), wiped(after)
     if options.keeps_wipes and new < 0.98 * old - 1:
-        yield f"wipes: {old} moves that pull filament back along a path became {new}"
+        yield f"wipes: {old} wipes that pull filament back along a path became {new}"
 
 
 ALL = {check.__name__: check for check in (deposits, filament, obstacles, ironing, rest, progress, labels, head_and_tail,

@@ -234,6 +234,22 @@ class Checks(unittest.TestCase):
 
         self.assertNotIn("lifts", faults(before, HEAD + layer(0.2, closed * 8), "free"))
 
+    def test_travel_to_the_next_layer_is_no_lift(self):
+        pulled, pushed = "G1 E-.8 F2100", "G1 E.8"
+        here, there = block(10, 0.2), block(40, 0.2)
+        closed = [pulled, there[0], pushed] + there[1:]
+        rising = [pulled, "G1 Z.4", "G1 X20 Y20 F9000"]  # then as there
+        before = HEAD + layer(0.2, here, closed) + rising + layer(0.4, here, closed)
+        after = HEAD + layer(0.2, here, closed) + layer(0.4, here, closed)
+
+        low = [checks.low_travel(print_trace.trace("\n".join(lines)))[:2] for lines in (before, after)]
+        self.assertEqual(low, [(2, 2), (2, 2)])
+
+    def test_a_wipe_with_a_speed_on_each_line_is_one(self):
+        wipe = ["G1 F8000", "G1 X18 Y10 E-.4", "G1 F8000", "G1 X15 Y10 E-.4", "G1 X40 Y40 F9000", "G1 E.8"]
+
+        self.assertEqual(checks.wiped(print_trace.trace("\n".join(HEAD + layer(0.2, block(20, 0.2) + wipe)))), 1)
+
     def test_a_lost_wipe_is_found(self):
         wiped = block(10, 0.2) + ["G1 X15 Y10 E-.8", "G1 X40 Y40 F9000", "G1 E.8"]
         before = HEAD + layer(0.2, wiped * 4)
