@@ -74,6 +74,40 @@ Middles MiddlesOf(const GcodeFile& file) {
   return middles;
 }
 
+// The places of `trip`, round, in the order in which it comes to them behind `last`.
+std::vector<uint32_t> EndedWith(std::vector<uint32_t> trip, uint32_t last) {
+  std::rotate(trip.begin(), std::find(trip.begin(), trip.end(), last) + 1, trip.end());
+  return trip;
+}
+
+// Numbers of `places`: round trips through all, from the first to the last one of a layer.
+//
+// The first object of the print cannot move in the first layer, and the last one not in the last
+// layer: scripts stand beside them. A short trip ends with the last one, and comes soon to the
+// first. If islands would rest too short where orders change to it, one that also begins with the
+// first one is left. `last` is the number of the last one.
+std::vector<std::vector<uint32_t>> TripsThrough(std::vector<Vertex> places, uint32_t last) {
+  std::vector<uint32_t> trip = EndedWith(RoundTrip(places), last);
+  const auto first = std::find(trip.begin(), trip.end(), 0);
+  if (2 * (first - trip.begin()) >= std::ssize(trip)) {
+    std::reverse(trip.begin(), trip.end());
+    trip = EndedWith(std::move(trip), last);
+  }
+  if (last == 0 || trip.front() == 0) return {trip};
+  const Vertex at_last = places[last];
+  places.erase(places.begin() + last);
+  std::vector<uint32_t> from_first = RoundTrip(places);
+  const auto added = [&](uint32_t end) {
+    return Distance(places[end], at_last) - Distance(places[end], places[0]);
+  };
+  if (from_first.size() > 2 && added(from_first[1]) < added(from_first.back())) {
+    std::reverse(from_first.begin() + 1, from_first.end());
+  }
+  for (uint32_t& number : from_first) number += number >= last ? 1 : 0;
+  from_first.push_back(last);
+  return {trip, from_first};
+}
+
 // Finds the runs of a layer.
 class RunFinder {
  public:
@@ -169,9 +203,13 @@ ObjectOrders::ObjectOrders(const GcodeFile& file) : file_(file) {
     barrier_ = "the print goes object by object";
     return;
   }
-  const std::vector<uint32_t> trip = RoundTrip(middles.points);
-  for (uint32_t place = 0; place < trip.size(); ++place) {
-    rank_[middles.objects[trip[place]]] = place;
+  const auto last = std::find_if(file.blocks.rbegin(), file.blocks.rend(),
+                                 [](const Block& block) { return block.object != 0; });
+  const auto at = std::find(middles.objects.begin(), middles.objects.end(), last->object);
+  const auto number = static_cast<uint32_t>(at - middles.objects.begin());
+  for (const std::vector<uint32_t>& trip : TripsThrough(middles.points, number)) {
+    Ranks& ranks = trips_.emplace_back();
+    for (const uint32_t place : trip) ranks.try_emplace(middles.objects[place], ranks.size());
   }
 }
 
@@ -182,10 +220,10 @@ LayerObjects ObjectOrders::ObjectsOf(const Layer& layer, const LayerFreedom& fre
 // The numbers of the objects of `run` along the round trip; of those that touch, the later one
 // stays the later one.
 std::vector<uint32_t> ObjectOrders::Sorted(const Layer& layer, const std::vector<LayerObject>& run,
-                                           bool backwards) const {
+                                           const Ranks& ranks, bool backwards) const {
   const auto n = static_cast<uint32_t>(run.size());
   const auto rank_of = [&](uint32_t i) {
-    const uint32_t rank = rank_.at(file_.blocks[layer.first_block + run[i].begin].object);
+    const uint32_t rank = ranks.at(file_.blocks[layer.first_block + run[i].begin].object);
     return backwards ? UINT32_MAX - rank : rank;
   };
   std::vector<uint32_t> left(n);
@@ -216,19 +254,20 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
     }
   }
   std::vector<LayerOrder> moved;
-  for (const bool turned : {false, true}) {
-    if (turned && !backwards) break;
+  const auto add = [&](const Ranks& ranks, bool turned) {
     LayerOrder other = order;
     for (const std::vector<LayerObject>& run : objects.runs) {
       auto to = other.begin() + run.front().begin;
-      for (const uint32_t object : Sorted(layer, run, turned)) {
+      for (const uint32_t object : Sorted(layer, run, ranks, turned)) {
         const auto from = order.begin();
         to = std::copy(from + run[object].begin, from + run[object].end, to);
       }
     }
     const bool known = std::find(moved.begin(), moved.end(), other) != moved.end();
     if (other != order && !known) moved.push_back(std::move(other));
-  }
+  };
+  for (const Ranks& ranks : trips_) add(ranks, false);
+  if (backwards && any()) add(trips_.front(), true);
   return moved;
 }
 

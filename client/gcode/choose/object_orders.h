@@ -39,11 +39,11 @@ struct LayerObjects {
 
 class ObjectOrders {
  public:
-  // Learns the round trip. `file` outlives this.
+  // Learns the round trips. `file` outlives this.
   explicit ObjectOrders(const GcodeFile& file);
 
   // False if no objects may change places anywhere: fewer than two, or printed one by one.
-  bool any() const { return !rank_.empty(); }
+  bool any() const { return !trips_.empty(); }
 
   // What prevents that in a file that has objects.
   std::string_view barrier() const { return barrier_; }
@@ -51,9 +51,9 @@ class ObjectOrders {
   // `freedom` is that of `layer`.
   LayerObjects ObjectsOf(const Layer& layer, const LayerFreedom& freedom) const;
 
-  // `order` with the objects of each run on the round trip, and with `backwards` on it backwards
-  // too; without those that are `order` itself. Nothing if `order` has the objects in another order
-  // than the file.
+  // `order` with the objects of each run on each round trip, and with `backwards` on the shortest
+  // one backwards too; without those that are `order` itself. Nothing if `order` has the objects in
+  // another order than the file.
   std::vector<LayerOrder> Moved(const Layer& layer, const LayerObjects& objects,
                                 const LayerOrder& order, bool backwards) const;
 
@@ -64,11 +64,13 @@ class ObjectOrders {
              const ColumnFiller& filler, LayerColumn& column) const;
 
  private:
+  using Ranks = absl::flat_hash_map<uint32_t, uint32_t>;  // [Block::object] its place on a trip
+
   std::vector<uint32_t> Sorted(const Layer& layer, const std::vector<LayerObject>& run,
-                               bool backwards) const;
+                               const Ranks& ranks, bool backwards) const;
 
   const GcodeFile& file_;
-  absl::flat_hash_map<uint32_t, uint32_t> rank_;  // [Block::object] its place on the round trip
+  std::vector<Ranks> trips_;
   std::string_view barrier_;
 };
 

@@ -100,6 +100,20 @@ TEST(MovedObjects, ChangePlacesInEveryNotation) {
   }
 }
 
+// The first object of the first layer and the last one of the last layer cannot move; all others
+// do, though every object rests as long as before.
+TEST(MovedObjects, ChangePlacesBetweenTheFirstAndTheLastOne) {
+  PillarPrint print;
+  print.order = {0, 3, 1, 4, 2, 5};
+  for (const int rest : {7, 13}) {
+    const std::string text = absl::StrReplaceAll(
+        Text(print, Klipper()), {{"layer_time = 0", absl::StrCat("layer_time = ", rest)}});
+    const GcodeRewrite rewrite = Optimised(text);
+    EXPECT_LT(Share(rewrite), 0.95) << rest << rewrite.unproven;
+    EXPECT_EQ(rewrite.layers_changed, print.layers) << rest;
+  }
+}
+
 TEST(MovedObjects, TakeWhatStandsAtTheirLabelsAlong) {
   PillarPrint print;
   print.before_object = "M117 object @\nSET_PRESSURE_ADVANCE ADVANCE=0.04\nM204 S900\n";
