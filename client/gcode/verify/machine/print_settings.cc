@@ -163,11 +163,11 @@ uint64_t PrintSettings::SettingsDigest() const {
 void PrintSettings::Renew() {
   digest_ = 0;
   for (size_t i = 0; i < kAccelTravel; ++i) digest_ = Mix(digest_, values_[i]);
-  acceleration_digest_ = 0;
+  path_acceleration_digest_ = 0;
   for (size_t i = kAccelPrint; i < kPressure; ++i) {
-    acceleration_digest_ = Mix(acceleration_digest_, values_[i]);
+    path_acceleration_digest_ = Mix(path_acceleration_digest_, values_[i]);
   }
-  acceleration_digest_ = Mix(acceleration_digest_, values_[kAccelTravel]);
+  acceleration_digest_ = Mix(path_acceleration_digest_, values_[kAccelTravel]);
   acceleration_digest_ = Mix(acceleration_digest_, values_[kAccelRetract]);
   changed_ = false;
 }

@@ -46,6 +46,12 @@ class PrintSettings {
     return acceleration_digest_;
   }
 
+  // The same without those of travel and retractions alone.
+  uint64_t PathAccelerationDigest() {
+    if (changed_) Renew();
+    return path_acceleration_digest_;
+  }
+
   // Of all but what comments say.
   uint64_t SettingsDigest() const;
 
@@ -92,6 +98,7 @@ class PrintSettings {
   std::array<Held, kSlots> held_{};
   uint64_t digest_ = 0;               // of values_, unless changed_
   uint64_t acceleration_digest_ = 0;  // the same
+  uint64_t path_acceleration_digest_ = 0;
   bool changed_ = true;
   uint64_t fan_ = 0;
   uint64_t motions_ = 1;

@@ -87,6 +87,7 @@ class VerifyMachine {
 
   // Of the accelerations, jerks and limits in force, those of travel included.
   uint64_t AccelerationDigest() { return settings_.AccelerationDigest(); }
+  uint64_t PathAccelerationDigest() { return settings_.PathAccelerationDigest(); }
 
   // Of all that is set but by comments: what a line may depend on of which no more is known.
   uint64_t SettingsDigest() const { return settings_.SettingsDigest(); }

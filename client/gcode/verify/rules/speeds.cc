@@ -93,6 +93,22 @@ LongestTravels LongestOf(const LayerPair& layer) {
   return longest;
 }
 
+// All travel to paths of the same settings has the same acceleration, as where those settings stand
+// before the travel: then it says nothing of the length.
+bool AcceleratesByPath(const LayerPair& layer) {
+  const TraceChunk& chunk = layer.was();
+  absl::flat_hash_map<uint64_t, uint64_t> of_path;
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+      const TraceMove& move = chunk.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+      const auto known = of_path.try_emplace(chunk.paths[link].acceleration, move.acceleration);
+      if (known.first->second != move.acceleration) return false;
+    }
+  }
+  return true;
+}
+
 // Some slicers accelerate less on short travel: true if the layer has travel as long as `move` with
 // another acceleration, and only much shorter travel with this one.
 bool IsTooLong(const TraceMove& move, const LongestTravels& longest) {
@@ -141,7 +157,7 @@ bool HasOther(const TravelFeeds& feeds, const TraceMove& move) {
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
   const TravelFeeds feeds = TravelFeedsOf(layer);
-  const LongestTravels longest = LongestOf(layer);
+  const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     const TraceLink& traced = chunk.links[link];

@@ -47,11 +47,12 @@ struct TracePath {
   double z_mm = 0;
   float length_mm = 0;
   float filament_mm = 0;
-  double begun_seconds = 0;  // since the file began: Clock
-  double left_seconds = 0;   // when it ends
-  Micro feed = 0;            // of its last segment
-  uint64_t fan = 0;          // VerifyMachine::fan at its first segment
-  bool states_fan = false;   // M106 or M107 stands before it, behind the path before
+  double begun_seconds = 0;   // since the file began: Clock
+  double left_seconds = 0;    // when it ends
+  Micro feed = 0;             // of its last segment
+  uint64_t fan = 0;           // VerifyMachine::fan at its first segment
+  uint64_t acceleration = 0;  // VerifyMachine::PathAccelerationDigest there
+  bool states_fan = false;    // M106 or M107 stands before it, behind the path before
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // part of it is of class kOverhang
   bool outer = false;      // part of it is of class kOuterWall

@@ -249,6 +249,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     BeginPath(motion, section, unit);
     chunk_.paths.back().fan = machine.fan();
     chunk_.paths.back().states_fan = states_fan_;
+    chunk_.paths.back().acceleration = machine.PathAccelerationDigest();
   }
   in_path_ = true;
   states_fan_ = false;
