@@ -116,7 +116,7 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
   // Those to and from where nothing is hidden, and visible walls.
   for (size_t path = 0; path < outlines.size() && habit.hidden && !habit.crossing_matters; ++path) {
     const Outline& outline = outlines[path];
-    const auto seen = [&](Vertex at) { return !rules.Hides(at, at, outline.feature); };
+    const auto seen = [&](Point at) { return !rules.Hides(at, at, outline.feature); };
     if (!seen(outline.points.front()) && !seen(outline.points.back())) continue;
     layer.add_exposed_paths(static_cast<uint32_t>(path));
   }
@@ -141,8 +141,8 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
   for (uint32_t b = of_file.first_block + 1; b < of_file.end_block; ++b) {
     const Block& before = file.blocks[b - 1];
     const Block& block = file.blocks[b];
-    const Vertex from = file.modes[before.mode].InMm(before.last);
-    const Vertex to = file.modes[block.mode].InMm(block.first);
+    const Point from = file.modes[before.mode].InMm(before.last);
+    const Point to = file.modes[block.mode].InMm(block.first);
     const Feature feature = outlines[b - of_file.first_block].feature;
     const PlannedTravel planned_travel = rules.TravelOf(from, to, feature);
     // New travel does not include wipes either; nor what the head does at a boundary, which it does

@@ -40,7 +40,7 @@ void IslandMap::AddLine(double from_x, double from_y, double to_x, double to_y, 
   }
 }
 
-void IslandMap::Add(const Point& point) {
+void IslandMap::Add(const PrintedPoint& point) {
   if (count_ > 1 && points_.size() < kMostCellsOfLayer) {
     const bool same =
         !points_.empty() && points_.back().island == point.island &&
@@ -69,7 +69,7 @@ std::vector<IslandCell> IslandMap::TakeCells() {
 IslandTree IslandMap::TakeTree() {
   std::vector<PlacedPoint> placed;
   placed.reserve(points_.size());
-  for (const Point& point : std::exchange(points_, {})) {
+  for (const PrintedPoint& point : std::exchange(points_, {})) {
     placed.emplace_back(CellOf(point.x, point.y, IslandTree::kMostMm), point);
   }
   std::stable_sort(placed.begin(), placed.end(),
@@ -86,7 +86,7 @@ std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PlacedPoint>& points)
   }
   uint64_t left = kMostPairs;
   absl::flat_hash_map<std::pair<uint32_t, uint32_t>, double> squares;
-  const auto look_at = [&](const Point& a, const Point& b) {
+  const auto look_at = [&](const PrintedPoint& a, const PrintedPoint& b) {
     const double square = (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
     if (a.island == b.island || square > IslandTree::kMostMm * IslandTree::kMostMm) return;
     const auto [at, is_new] = squares.try_emplace(std::minmax(a.island, b.island), square);

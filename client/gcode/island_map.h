@@ -47,14 +47,14 @@ class IslandMap {
   IslandTree TakeTree();
 
  private:
-  struct Point {
+  struct PrintedPoint {
     double x = 0;
     double y = 0;
     uint32_t island = 0;
   };
-  using PlacedPoint = std::pair<uint64_t, Point>;
+  using PlacedPoint = std::pair<uint64_t, PrintedPoint>;
 
-  void Add(const Point& point);
+  void Add(const PrintedPoint& point);
   void Tidy();
   static std::vector<IslandGap> GapsOf(const std::vector<PlacedPoint>& points);
 
@@ -62,7 +62,7 @@ class IslandMap {
 
   const uint32_t count_;
   std::vector<IslandCell> cells_;
-  std::vector<Point> points_;  // unless there is one island
+  std::vector<PrintedPoint> points_;  // unless there is one island
   size_t room_ = kLeastRoom;
   bool full_ = false;
 };

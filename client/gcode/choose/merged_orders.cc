@@ -216,13 +216,13 @@ class LayerMerge {
   }
 
  private:
-  Vertex BeginOf(const Placement& placement) const {
-    const std::vector<Vertex>& points = outlines_[placement.block - given_.front().block].points;
+  Point BeginOf(const Placement& placement) const {
+    const std::vector<Point>& points = outlines_[placement.block - given_.front().block].points;
     if (placement.closed) return points[placement.entry];
     return placement.as_given() ? points.front() : points.back();
   }
 
-  Vertex EndOf(const Placement& placement) const { return BeginOf(OrderState::Turned(placement)); }
+  Point EndOf(const Placement& placement) const { return BeginOf(OrderState::Turned(placement)); }
 
   // Kicks take long: only the orders that are the likeliest to be chosen are worth them.
   LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,

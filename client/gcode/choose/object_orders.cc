@@ -52,7 +52,7 @@ bool PrintsOneByOne(const GcodeFile& file) {
 // Objects of a file, in the order in which they are first printed, and the middle of their paths.
 struct Middles {
   std::vector<uint32_t> objects;
-  std::vector<Vertex> points;
+  std::vector<Point> points;
 };
 
 Middles MiddlesOf(const GcodeFile& file) {
@@ -66,8 +66,8 @@ Middles MiddlesOf(const GcodeFile& file) {
       middles.points.push_back({});
     }
     auto& [place, paths] = found->second;
-    Vertex& middle = middles.points[place];
-    const Vertex at = file.modes[block.mode].InMm(block.first);
+    Point& middle = middles.points[place];
+    const Point at = file.modes[block.mode].InMm(block.first);
     middle = {(middle.x * paths + at.x) / (paths + 1), (middle.y * paths + at.y) / (paths + 1)};
     paths += 1;
   }
@@ -86,7 +86,7 @@ std::vector<uint32_t> EndedWith(std::vector<uint32_t> trip, uint32_t last) {
 // layer: scripts stand beside them. A short trip ends with the last one, and comes soon to the
 // first. If islands would rest too short where orders change to it, one that also begins with the
 // first one is left. `last` is the number of the last one.
-std::vector<std::vector<uint32_t>> TripsThrough(std::vector<Vertex> places, uint32_t last) {
+std::vector<std::vector<uint32_t>> TripsThrough(std::vector<Point> places, uint32_t last) {
   std::vector<uint32_t> trip = EndedWith(RoundTrip(places), last);
   const auto first = std::find(trip.begin(), trip.end(), 0);
   if (2 * (first - trip.begin()) >= std::ssize(trip)) {
@@ -94,7 +94,7 @@ std::vector<std::vector<uint32_t>> TripsThrough(std::vector<Vertex> places, uint
     trip = EndedWith(std::move(trip), last);
   }
   if (last == 0 || trip.front() == 0) return {trip};
-  const Vertex at_last = places[last];
+  const Point at_last = places[last];
   places.erase(places.begin() + last);
   std::vector<uint32_t> from_first = RoundTrip(places);
   const auto added = [&](uint32_t end) {

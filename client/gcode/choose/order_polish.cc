@@ -134,7 +134,7 @@ class OrderPolisher::Search {
   }
 
   // Of an open path both, of a closed one the one nearest to `point`; none if it has no choice.
-  std::vector<uint32_t> EntriesNear(size_t i, Vertex point) const {
+  std::vector<uint32_t> EntriesNear(size_t i, Point point) const {
     const PathRule& rule = state_.RuleAt(i);
     if (!rule.contour) return rule.one_way ? std::vector<uint32_t>{} : std::vector<uint32_t>{0, 1};
     if (rule.entries.size() == 1) return {};
@@ -276,18 +276,18 @@ LayerOrder OrderPolisher::Polish(const LayerOrder& begun, const OrderMerger& jud
   return Search(*this, judge, begun).Run(effort);
 }
 
-Vertex OrderPolisher::Begin(const Placement& placement) const {
-  const std::vector<Vertex>& points = outlines_[placement.block - first_block_].points;
+Point OrderPolisher::Begin(const Placement& placement) const {
+  const std::vector<Point>& points = outlines_[placement.block - first_block_].points;
   if (placement.closed) return points[placement.entry];
   return placement.as_given() ? points.front() : points.back();
 }
 
-Vertex OrderPolisher::End(const Placement& placement) const {
+Point OrderPolisher::End(const Placement& placement) const {
   return Begin(OrderState::Turned(placement));
 }
 
-uint32_t OrderPolisher::NearestEntry(uint32_t path, Vertex point) const {
-  const std::vector<Vertex>& points = outlines_[path].points;
+uint32_t OrderPolisher::NearestEntry(uint32_t path, Point point) const {
+  const std::vector<Point>& points = outlines_[path].points;
   const PathRule& rule = freedom_.rules[path];
   const size_t starts = rule.StartCount(points.size() - 1);
   double least = std::numeric_limits<double>::infinity();
@@ -309,8 +309,8 @@ struct Probes {
   std::vector<uint32_t> path;  // [point]
   std::vector<size_t> first;   // [path] its first point; one more at the end
 
-  void Add(uint32_t of, Vertex vertex) {
-    points.push_back({vertex.x, vertex.y});
+  void Add(uint32_t of, Point point) {
+    points.push_back(point);
     path.push_back(of);
   }
 };
@@ -319,7 +319,7 @@ Probes ProbesOf(const std::vector<Outline>& outlines, const LayerFreedom& freedo
   Probes probes;
   for (uint32_t path = 0; path < outlines.size(); ++path) {
     probes.first.push_back(probes.points.size());
-    const std::vector<Vertex>& points = outlines[path].points;
+    const std::vector<Point>& points = outlines[path].points;
     const PathRule& rule = freedom.rules[path];
     if (!rule.contour) {
       probes.Add(path, points.front());

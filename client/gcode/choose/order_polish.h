@@ -73,9 +73,9 @@ class OrderPolisher {
   class Search;
 
   void FindNeighbors();
-  Vertex Begin(const Placement& placement) const;
-  Vertex End(const Placement& placement) const;
-  uint32_t NearestEntry(uint32_t path, Vertex point) const;
+  Point Begin(const Placement& placement) const;
+  Point End(const Placement& placement) const;
+  uint32_t NearestEntry(uint32_t path, Point point) const;
 
   const uint32_t first_block_;
   const std::vector<Outline>& outlines_;

@@ -15,8 +15,8 @@ constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 struct Candidate {
   IslandTimes times;
   TravelTotals totals;
-  Vertex begin;
-  Vertex end;
+  Point begin;
+  Point end;
   double score = kUnreachable;  // of the best row up to it
 };
 

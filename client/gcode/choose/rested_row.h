@@ -15,7 +15,7 @@
 
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/island_turns.h"
-#include "client/gcode/machine/vertex.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -23,14 +23,14 @@ namespace traverse::gcode {
 struct TurnedLayer {
   uint32_t first_block = 0;
   IslandTurns turns;
-  std::vector<Vertex> begin;  // [turn] where its first path begins
-  std::vector<Vertex> end;    // [turn] and where its last one ends
+  std::vector<Point> begin;  // [turn] where its first path begins
+  std::vector<Point> end;    // [turn] and where its last one ends
 
   // The file's own order, and the travel to it as measured.
   TravelTotals given;
   IslandTimes given_times;
-  Vertex given_begin;
-  Vertex given_end;
+  Point given_begin;
+  Point given_end;
   double given_travel_mm = 0;
   double given_travel_seconds = 0;
 

@@ -16,7 +16,7 @@ constexpr double kMostPairs = 3e7;
 
 class Trip {
  public:
-  explicit Trip(const std::vector<Vertex>& points) : points_(points), order_(points.size()) {
+  explicit Trip(const std::vector<Point>& points) : points_(points), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
@@ -62,13 +62,13 @@ class Trip {
   }
   double Mm(size_t a, size_t b) const { return Distance(points_[order_[a]], points_[order_[b]]); }
 
-  const std::vector<Vertex>& points_;
+  const std::vector<Point>& points_;
   std::vector<uint32_t> order_;
 };
 
 }  // namespace
 
-std::vector<uint32_t> RoundTrip(const std::vector<Vertex>& points) {
+std::vector<uint32_t> RoundTrip(const std::vector<Point>& points) {
   Trip trip(points);
   const size_t n = points.size();
   const auto passes =

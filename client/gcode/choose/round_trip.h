@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "client/gcode/machine/vertex.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -14,7 +14,7 @@ namespace traverse::gcode {
 // order, improved by turning runs and by moving single points, until neither makes it shorter.
 // O(n) a pass of points, each with the few hundred next to it in the trip; a limited number of
 // passes.
-std::vector<uint32_t> RoundTrip(const std::vector<Vertex>& points);
+std::vector<uint32_t> RoundTrip(const std::vector<Point>& points);
 
 }  // namespace traverse::gcode
 

@@ -83,12 +83,12 @@ void HiddenMoves::Fill(const GcodeFile& file, size_t first, size_t end) {
   }
 }
 
-bool HiddenMoves::Hides(size_t layer, Vertex a, Vertex b, bool leaves_wall) const {
+bool HiddenMoves::Hides(size_t layer, Point a, Point b, bool leaves_wall) const {
   const double length = Distance(a, b);
   if (!(length <= longest_mm_)) return false;
   const LayerTiles& tiles = layers_[layer];
-  const Vertex from{a.x / cell_mm_, a.y / cell_mm_};
-  const Vertex to{b.x / cell_mm_, b.y / cell_mm_};
+  const Point from{a.x / cell_mm_, a.y / cell_mm_};
+  const Point to{b.x / cell_mm_, b.y / cell_mm_};
   // Farther off no layer has cells.
   constexpr double kFar = 1 << 29;
   for (const double at : {from.x, from.y, to.x, to.y}) {

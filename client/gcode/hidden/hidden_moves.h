@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "client/gcode/hidden/cell_tiles.h"
-#include "client/gcode/machine/vertex.h"
 #include "client/gcode/model/gcode_file.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -30,12 +30,12 @@ class HiddenMoves {
 
   // Whether the straight move from `a` to `b` in layer `layer` is hidden. `leaves_wall`: a visible
   // wall ends at `a`; then the move may begin there, else it keeps away from all of them.
-  bool Hides(size_t layer, Vertex a, Vertex b, bool leaves_wall) const;
+  bool Hides(size_t layer, Point a, Point b, bool leaves_wall) const;
 
   double longest_mm() const { return longest_mm_; }
 
   // Whether a move could end at `at`.
-  bool Hides(size_t layer, Vertex at) const { return Hides(layer, at, at, false); }
+  bool Hides(size_t layer, Point at) const { return Hides(layer, at, at, false); }
 
  private:
   struct LayerTiles {

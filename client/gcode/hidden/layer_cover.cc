@@ -60,8 +60,8 @@ class CoverMaker {
  private:
   std::optional<CellBox> Box() const;
   void AddWall(const Outline& wall, CellRows& lines);
-  void AddLine(Vertex a, Vertex b, double radius, CellRows& cells) const;
-  void AddCrossings(Vertex a, Vertex b);
+  void AddLine(Point a, Point b, double radius, CellRows& cells) const;
+  void AddCrossings(Point a, Point b);
   CellRows Odd();
   CellRows PointsOfPart() const;
   void FindRuns();
@@ -79,13 +79,13 @@ class CoverMaker {
 
 std::optional<CellBox> CoverMaker::Box() const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vertex low{kFar, kFar};
-  Vertex high{-kFar, -kFar};
+  Point low{kFar, kFar};
+  Point high{-kFar, -kFar};
   size_t walls = 0;
   for (const Outline& outline : outlines_) {
     if (!IsWallOfPart(outline)) continue;
     ++walls;
-    for (const Vertex& point : outline.shape()) {
+    for (const Point& point : outline.shape()) {
       low = {std::min(low.x, point.x), std::min(low.y, point.y)};
       high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
@@ -109,12 +109,12 @@ std::optional<CellBox> CoverMaker::Box() const {
 }
 
 // Sets the cells whose middle is at most `radius` from the line from `a` to `b`; all in cells.
-void CoverMaker::AddLine(Vertex a, Vertex b, double radius, CellRows& cells) const {
+void CoverMaker::AddLine(Point a, Point b, double radius, CellRows& cells) const {
   const double length = Distance(a, b);
   // The sides of the line, as far as it goes straight.
-  const Vertex aside = length > 0
-                           ? Vertex{-(b.y - a.y) / length * radius, (b.x - a.x) / length * radius}
-                           : Vertex{0, 0};
+  const Point aside = length > 0
+                          ? Point{-(b.y - a.y) / length * radius, (b.x - a.x) / length * radius}
+                          : Point{0, 0};
   const auto first = static_cast<int>(std::ceil(std::min(a.y, b.y) - radius - 0.5));
   const auto last = static_cast<int>(std::floor(std::max(a.y, b.y) + radius - 0.5));
   for (int row = first; row <= last; ++row) {
@@ -125,7 +125,7 @@ void CoverMaker::AddLine(Vertex a, Vertex b, double radius, CellRows& cells) con
       low = std::min(low, x);
       high = std::max(high, x);
     };
-    for (const Vertex& end : {a, b}) {
+    for (const Point& end : {a, b}) {
       const double dy = y - end.y;
       if (std::abs(dy) > radius) continue;
       const double dx = std::sqrt(radius * radius - dy * dy);
@@ -145,7 +145,7 @@ void CoverMaker::AddLine(Vertex a, Vertex b, double radius, CellRows& cells) con
 }
 
 // Where the line from `a` to `b` crosses the middles of rows.
-void CoverMaker::AddCrossings(Vertex a, Vertex b) {
+void CoverMaker::AddCrossings(Point a, Point b) {
   if (a.y > b.y) std::swap(a, b);
   const auto first = static_cast<int>(std::ceil(a.y - 0.5));
   const auto end = static_cast<int>(std::ceil(b.y - 0.5));
@@ -157,12 +157,12 @@ void CoverMaker::AddCrossings(Vertex a, Vertex b) {
 void CoverMaker::AddWall(const Outline& wall, CellRows& lines) {
   const double half = std::clamp(wall.width_mm, kLeastWidthMm, kMostWidthMm) / 2 / cell_mm_;
   constexpr double kHalfDiagonal = std::numbers::sqrt2 / 2;
-  const std::vector<Vertex>& shape = wall.shape();
-  const auto in_cells = [this](Vertex at) { return Vertex{at.x / cell_mm_, at.y / cell_mm_}; };
+  const std::vector<Point>& shape = wall.shape();
+  const auto in_cells = [this](Point at) { return Point{at.x / cell_mm_, at.y / cell_mm_}; };
   const size_t count = wall.is_loop ? shape.size() : shape.size() - 1;
   for (size_t i = 0; i < count; ++i) {
-    const Vertex a = in_cells(shape[i]);
-    const Vertex b = in_cells(shape[(i + 1) % shape.size()]);
+    const Point a = in_cells(shape[i]);
+    const Point b = in_cells(shape[(i + 1) % shape.size()]);
     AddLine(a, b, half + kHalfDiagonal, near_);
     if (!wall.is_loop) AddLine(a, b, half + kHalfDiagonal, near_open_);
     if (half > kHalfDiagonal) AddLine(a, b, half - kHalfDiagonal, lines);
@@ -195,7 +195,7 @@ CellRows CoverMaker::PointsOfPart() const {
   };
   for (const Outline& outline : outlines_) {
     if (!IsOfPart(outline)) continue;
-    const std::vector<Vertex>& shape = outline.shape();
+    const std::vector<Point>& shape = outline.shape();
     for (size_t i = 0; i < shape.size(); ++i) {
       add(shape[i].x, shape[i].y);
       // Ends may lie near a wall.

@@ -244,7 +244,7 @@ void LinkComposer::LiftAs(const LinkStep& step, Decimal z) {
 // The bends of the travel to the next path, and its end.
 std::vector<Position> LinkComposer::BendsToNext() const {
   std::vector<Position> travel;
-  for (const Vertex& bend : form_.travel.via) {
+  for (const Point& bend : form_.travel.via) {
     travel.push_back(InWords(bend, link_.machine().UnitMm()));
   }
   travel.push_back(to_.first());

@@ -65,22 +65,22 @@ void LayerDepartures::Note(uint32_t block) {
   if (noted.mm > 0) departures_[block] = noted;
 }
 
-Vertex LayerDepartures::Begin(const Placement& path) const {
+Point LayerDepartures::Begin(const Placement& path) const {
   const Block& block = file_.blocks[path.block];
   if (path.as_given()) return file_.modes[block.mode].InMm(block.first);
-  const std::vector<Vertex>& points = outlines_[path.block - first_block_].points;
+  const std::vector<Point>& points = outlines_[path.block - first_block_].points;
   return path.closed ? points[path.entry] : points.back();
 }
 
-Vertex LayerDepartures::End(const Placement& path) const {
+Point LayerDepartures::End(const Placement& path) const {
   const Block& block = file_.blocks[path.block];
   if (path.as_given()) return file_.modes[block.mode].InMm(block.last);
-  const std::vector<Vertex>& points = outlines_[path.block - first_block_].points;
+  const std::vector<Point>& points = outlines_[path.block - first_block_].points;
   if (!path.closed) return points.front();
-  const Vertex end = points[path.entry];
+  const Point end = points[path.entry];
   const auto gap = gaps_.find(path.block);
   if (gap == gaps_.end() || !gap->second.moves[path.entry]) return end;
-  const Vertex before = points[path.entry - 1];
+  const Point before = points[path.entry - 1];
   const double share = gap->second.mm / Distance(end, before);
   return {end.x + (before.x - end.x) * share, end.y + (before.y - end.y) * share};
 }
@@ -91,37 +91,37 @@ const Departure* LayerDepartures::Of(const Placement& from, bool wipes) const {
   return found->second.departs && !ShortMove(from) ? nullptr : &found->second;
 }
 
-std::optional<Vertex> LayerDepartures::ShortMove(const Placement& from) const {
+std::optional<Point> LayerDepartures::ShortMove(const Placement& from) const {
   const auto found = departures_.find(from.block);
   if (found == departures_.end() || !found->second.departs_to) return std::nullopt;
   if (from.as_given()) return found->second.departs_to;
-  const std::vector<Vertex>& points = outlines_[from.block - first_block_].points;
+  const std::vector<Point>& points = outlines_[from.block - first_block_].points;
   if (!from.closed || !found->second.turns) return std::nullopt;
   const auto to = TurnedDeparture(points, from.entry, *found->second.departs_to);
   // Another wall may be as near on that side.
   return to && walls_.Crossed(End(from), *to) ? std::nullopt : to;
 }
 
-Vertex LayerDepartures::Behind(const Placement& from, const Departure& departure) const {
+Point LayerDepartures::Behind(const Placement& from, const Departure& departure) const {
   if (from.as_given()) return departure.as_given;
   return departure.departs ? *ShortMove(from) : BackOver(from, departure.mm);
 }
 
-Vertex LayerDepartures::Open(const Placement& from) const {
+Point LayerDepartures::Open(const Placement& from) const {
   const Departure* departure = Of(from, /*wipes=*/false);
   return departure == nullptr || departure->departs ? End(from) : Behind(from, *departure);
 }
 
-std::optional<Vertex> LayerDepartures::BehindFixed(uint32_t block) const {
+std::optional<Point> LayerDepartures::BehindFixed(uint32_t block) const {
   const auto found = behind_fixed_.find(block);
-  return found != behind_fixed_.end() ? std::optional<Vertex>(found->second) : std::nullopt;
+  return found != behind_fixed_.end() ? std::optional<Point>(found->second) : std::nullopt;
 }
 
-Vertex LayerDepartures::BackOver(const Placement& from, double mm) const {
-  const std::vector<Vertex>& points = outlines_[from.block - first_block_].points;
+Point LayerDepartures::BackOver(const Placement& from, double mm) const {
+  const std::vector<Point>& points = outlines_[from.block - first_block_].points;
   const size_t n = points.size();
-  Vertex at = End(from);
-  const auto go_to = [&](Vertex next) {
+  Point at = End(from);
+  const auto go_to = [&](Point next) {
     const double length = Distance(at, next);
     const double share = length > mm ? mm / length : 1;
     at = {at.x + (next.x - at.x) * share, at.y + (next.y - at.y) * share};

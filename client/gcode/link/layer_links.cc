@@ -30,7 +30,7 @@ LayerLinks::LayerLinks(const GcodeFile& file, const Layer& layer, const Retracti
       hides_(hides && habit.hidden != nullptr),
       travel_(travel) {}
 
-LinkForm LayerLinks::FormOf(const Placement& from, Vertex end, const Placement& to,
+LinkForm LayerLinks::FormOf(const Placement& from, Point end, const Placement& to,
                             uint32_t place) const {
   LinkForm form;
   if (IsBoundary(file_.blocks[place])) form.boundary = place;
@@ -48,23 +48,23 @@ void LayerLinks::Hide(const Placement& from, const Placement& to, bool bends,
   if (rules_.Hides(departures_.Open(from), departures_.Begin(to), FeatureOf(to))) {
     return form.Hide(OpenTravel(from, to));
   }
-  std::vector<Vertex> around = bends ? HiddenBends(from, to) : std::vector<Vertex>();
+  std::vector<Point> around = bends ? HiddenBends(from, to) : std::vector<Point>();
   if (around.empty()) return;
   form.Hide(OpenTravel(from, to));
   form.travel.via = std::move(around);
 }
 
-std::vector<Vertex> LayerLinks::HiddenBends(const Placement& from, const Placement& to) const {
+std::vector<Point> LayerLinks::HiddenBends(const Placement& from, const Placement& to) const {
   if (travel_ == nullptr) return {};
-  const Vertex leaves = departures_.Open(from);
-  const Vertex begin = departures_.Begin(to);
-  std::vector<Vertex> bends = rules_.HiddenBends(leaves, begin, FeatureOf(to));
-  const auto seconds = [this](Vertex a, Vertex b) {
+  const Point leaves = departures_.Open(from);
+  const Point begin = departures_.Begin(to);
+  std::vector<Point> bends = rules_.HiddenBends(leaves, begin, FeatureOf(to));
+  const auto seconds = [this](Point a, Point b) {
     return StopToStopSeconds(Distance(a, b), travel_->speed_mm_s, travel_->accel_mm_s2);
   };
   double bent = 0;
-  Vertex at = leaves;
-  for (const Vertex& bend : bends) bent += seconds(std::exchange(at, bend), bend);
+  Point at = leaves;
+  for (const Point& bend : bends) bent += seconds(std::exchange(at, bend), bend);
   bent += seconds(at, begin);
   if (bent >= seconds(leaves, begin) + travel_->retraction_seconds) bends.clear();
   return bends;
@@ -83,11 +83,11 @@ bool LayerLinks::ChangesGiven() const {
   return false;
 }
 
-void LayerLinks::DecideTravel(const Placement& from, Vertex end, const Placement& to,
-                              uint32_t place, LinkForm& form) const {
-  const Vertex begin = departures_.Begin(to);
+void LayerLinks::DecideTravel(const Placement& from, Point end, const Placement& to, uint32_t place,
+                              LinkForm& form) const {
+  const Point begin = departures_.Begin(to);
   const Feature feature = FeatureOf(to);
-  const std::optional<Vertex> behind_fixed = departures_.BehindFixed(place);
+  const std::optional<Point> behind_fixed = departures_.BehindFixed(place);
   PlannedTravel& travel = form.travel;
   travel = rules_.TravelOf(behind_fixed.value_or(end), begin, feature);
   // Paths that the slicer wipes stay wiped, so that all travel moves from them are retracted.
@@ -96,7 +96,7 @@ void LayerLinks::DecideTravel(const Placement& from, Vertex end, const Placement
   const Departure* departure = departures_.Of(from);
   form.departs = departure != nullptr;
   if (departure == nullptr) return;
-  const Vertex at = departures_.Behind(from, *departure);
+  const Point at = departures_.Behind(from, *departure);
   PlannedTravel behind = rules_.TravelOf(at, begin, feature);
   // What goes on along the path must not put a visible wall between the nozzle and the next one.
   const bool goes_on = !departure->wipes && !departure->departs;
@@ -117,7 +117,7 @@ bool LayerLinks::Departs(const Placement& from, const Departure& departure,
   if (straight.retracts != departure.retracts) return false;
   // Behind a loop as sliced it hides the retraction, whatever it crosses.
   if (straight.retracts && from.as_given()) return true;
-  std::vector<Vertex> bent = {straight.from, behind.from};
+  std::vector<Point> bent = {straight.from, behind.from};
   bent.insert(bent.end(), behind.via.begin(), behind.via.end());
   bent.push_back(behind.to);
   return straight.crosses || !(behind.crosses || walls_.CrossedByTravel(bent));

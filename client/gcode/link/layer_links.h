@@ -36,7 +36,7 @@ class LayerLinks {
 
   // The link from `from`, which ends at `end`, to `to` where the file has the one before block
   // `place`. `from` may be of the layer before.
-  LinkForm FormOf(const Placement& from, Vertex end, const Placement& to, uint32_t place) const;
+  LinkForm FormOf(const Placement& from, Point end, const Placement& to, uint32_t place) const;
 
   // Leaves out of `form`, which links `from` and `to`, what is for those who see it, if nobody
   // does. A move that is hidden only if it `bends` is led so where that takes less time than to
@@ -59,7 +59,7 @@ class LayerLinks {
 
   // Where the travel leads that `from`, which ends at `end`, and the way it is left leave to do,
   // and what comes ahead of it.
-  void DecideTravel(const Placement& from, Vertex end, const Placement& to, uint32_t place,
+  void DecideTravel(const Placement& from, Point end, const Placement& to, uint32_t place,
                     LinkForm& form) const;
 
   // Whether travel that the file does not have begins with the short move that leads away from
@@ -71,7 +71,7 @@ class LayerLinks {
 
   // The bends by which the move that leads openly from `from` to `to` is hidden in less time than a
   // retraction takes; none if there are none.
-  std::vector<Vertex> HiddenBends(const Placement& from, const Placement& to) const;
+  std::vector<Point> HiddenBends(const Placement& from, const Placement& to) const;
 
   // The travel of a hidden move.
   PlannedTravel OpenTravel(const Placement& from, const Placement& to) const;

@@ -32,7 +32,7 @@ struct LinkForm {
 
   // The path before begins elsewhere than in the file: where its departure leads now, in mm, if it
   // is made.
-  std::optional<Vertex> turned_departure;
+  std::optional<Point> turned_departure;
 
   // The link with the marks of a boundary (a new layer, an object) that is due here; all its lines
   // are written. In the file it stands before block `boundary`.

@@ -13,11 +13,11 @@ namespace {
 
 // From where the head leaves the path before `block` to that block: all of the travel in the link
 // if it is open, else straight.
-std::vector<Vertex> LineTo(const GcodeFile& file, uint32_t block, bool straight) {
+std::vector<Point> LineTo(const GcodeFile& file, uint32_t block, bool straight) {
   const MachineState& mode = file.modes[file.blocks[block].mode];
   const Link link = ReadLink(file, block);
   const LinkStep* going_on = GoingOnAlong(file.blocks[block - 1], link);
-  std::vector<Vertex> line = {
+  std::vector<Point> line = {
       mode.InMm(going_on != nullptr ? going_on->to : file.blocks[block - 1].last)};
   bool skips = going_on != nullptr;
   for (const LinkStep& step : link.steps) {

@@ -44,8 +44,8 @@ TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, con
 
 PlannedTravel LayerLinks::OpenTravel(const Placement& from, const Placement& to) const {
   PlannedTravel travel;
-  const Vertex end = departures_.End(from);
-  const Vertex leaves = departures_.Open(from);
+  const Point end = departures_.End(from);
+  const Point leaves = departures_.Open(from);
   travel.from = leaves;
   travel.to = departures_.Begin(to);
   travel.mm = Distance(leaves, travel.to);
@@ -80,8 +80,8 @@ bool LayerLinks::IsBlocked(const PlannedTravel& travel) const {
   const Block& first = file_.blocks[layer_.first_block];
   const double z_mm =
       ToDouble(layer_.z) * file_.modes[first.mode].UnitMm() + (travel.retracts ? lift_mm_ : 0);
-  Vertex at = travel.from;
-  for (const Vertex& bend : travel.via) {
+  Point at = travel.from;
+  for (const Point& bend : travel.via) {
     if (!room_->IsClear(at, z_mm, bend, z_mm)) return true;
     at = bend;
   }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "client/gcode/machine/vertex.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -19,8 +19,8 @@ namespace traverse::gcode {
 // the angle at the new start, as far off, but no farther than the first segment there is long.
 // Nothing if the file's move does not lie between its loop's first and last segment. REQUIRES: at
 // least three points, the last one at the first or just short of it; 0 < entry < points.size() - 1.
-std::optional<Vertex> TurnedDeparture(const std::vector<Vertex>& points, uint32_t entry,
-                                      Vertex departs_to);
+std::optional<Point> TurnedDeparture(const std::vector<Point>& points, uint32_t entry,
+                                     Point departs_to);
 
 }  // namespace traverse::gcode
 

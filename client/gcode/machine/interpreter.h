@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "client/gcode/machine/print_state.h"
-#include "client/gcode/machine/vertex.h"
 #include "client/gcode/text/lexer.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -51,7 +51,7 @@ struct MachineState {
   double UnitMm() const { return inches ? 25.4 : 1; }
 
   // A position in these units as a point in mm.
-  Vertex InMm(const Position& place) const {
+  Point InMm(const Position& place) const {
     return {ToDouble(place.x) * UnitMm(), ToDouble(place.y) * UnitMm()};
   }
 };

@@ -133,10 +133,10 @@ double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
   };
   if (rise != 0) limit(std::abs(rise) / length, profile_.max_z_speed, profile_.z_accel);
   if (move.filament < 0) limit(-move.filament, profile_.max_e_speed, profile_.retract_accel);
-  std::vector<Vertex> points = {state.InMm(step.from)};
+  std::vector<Point> points = {state.InMm(step.from)};
   if (step.arc) {
     const double chords = std::max(std::floor(length / profile_.arc_chord), 1.0);
-    for (const Vertex& point : ArcChords(step.command, step.from, state.at, unit, chords)) {
+    for (const Point& point : ArcChords(step.command, step.from, state.at, unit, chords)) {
       points.push_back(point);
     }
   }

@@ -50,14 +50,14 @@ Circle CircleOf(const Command& command, double dx, double dy) {
 }
 
 // The points between the ends that part an arc from `from` into `lines`, or kMostLines.
-std::vector<Vertex> Parted(const Circle& circle, const Position& from, double unit_mm,
-                           double lines) {
+std::vector<Point> Parted(const Circle& circle, const Position& from, double unit_mm,
+                          double lines) {
   const double radius_mm = circle.radius * unit_mm;
   const int parts = static_cast<int>(std::min(lines, kMostLines));
   const double first = std::atan2(-circle.j, -circle.i);
   const double center_x = (ToDouble(from.x) + circle.i) * unit_mm;
   const double center_y = (ToDouble(from.y) + circle.j) * unit_mm;
-  std::vector<Vertex> points;
+  std::vector<Point> points;
   for (int k = 1; k < parts; ++k) {
     const double angle = first + circle.turn * circle.angle * k / parts;
     points.push_back(
@@ -82,8 +82,8 @@ double ArcLength(const Command& command, const Position& from, const Position& t
   return circle.angle * circle.radius * unit_mm;
 }
 
-std::vector<Vertex> ArcPoints(const Command& command, const Position& from, const Position& to,
-                              double unit_mm, double tolerance_mm) {
+std::vector<Point> ArcPoints(const Command& command, const Position& from, const Position& to,
+                             double unit_mm, double tolerance_mm) {
   const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));
   const double radius_mm = circle.radius * unit_mm;
   if (!(radius_mm > tolerance_mm)) return {};
@@ -92,8 +92,8 @@ std::vector<Vertex> ArcPoints(const Command& command, const Position& from, cons
   return Parted(circle, from, unit_mm, std::ceil(circle.angle / step));
 }
 
-std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
-                              double unit_mm, double lines) {
+std::vector<Point> ArcChords(const Command& command, const Position& from, const Position& to,
+                             double unit_mm, double lines) {
   const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));
   return Parted(circle, from, unit_mm, lines);
 }

@@ -17,13 +17,13 @@ double ArcLength(const Command& command, const Position& from, const Position& t
 
 // Points on that arc between its ends, in mm and in order, such that the lines between them stay
 // within `tolerance_mm` of it; none for a flatter arc. At most 719.
-std::vector<Vertex> ArcPoints(const Command& command, const Position& from, const Position& to,
-                              double unit_mm, double tolerance_mm);
+std::vector<Point> ArcPoints(const Command& command, const Position& from, const Position& to,
+                             double unit_mm, double tolerance_mm);
 
 // The points between its ends that divide the arc into `lines` equal pieces, at most 720, as
 // firmware without true arcs does. `lines` is a whole number, at least 1.
-std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
-                              double unit_mm, double lines);
+std::vector<Point> ArcChords(const Command& command, const Position& from, const Position& to,
+                             double unit_mm, double lines);
 
 // An arc that ends beside its circle is not a true arc: how a machine executes it depends on where
 // it begins. False if it ends farther off than rounding explains.

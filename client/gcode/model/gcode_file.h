@@ -23,9 +23,9 @@
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/machine/machine_profile.h"
 #include "client/gcode/machine/print_state.h"
-#include "client/gcode/machine/vertex.h"
 #include "client/gcode/text/line_numbers.h"
 #include "client/gcode/work_limit.h"
+#include "engine/model/point.h"
 
 namespace traverse {
 namespace gcode {
@@ -109,7 +109,7 @@ struct GcodeFile {
   std::vector<gcode::Layer> layers;
 
   // Where the segments of all blocks end, in mm; an arc is one segment.
-  std::vector<gcode::Vertex> ends;
+  std::vector<Point> ends;
 
   // Modes in force in blocks: units, relative or absolute, tool.
   std::vector<gcode::MachineState> modes;

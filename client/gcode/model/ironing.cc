@@ -74,12 +74,12 @@ double UsualSpacingMm(const GcodeFile& file, const Layer& layer, double usual_fl
 
 // How far from `p` in the direction `to`, of length 1, the segment lies; none if it does not cross
 // that line nearly at a right angle.
-std::optional<double> DistanceAlong(Vertex p, Vertex to, const Segment& segment) {
-  const Vertex side{segment.b.x - segment.a.x, segment.b.y - segment.a.y};
+std::optional<double> DistanceAlong(Point p, Point to, const Segment& segment) {
+  const Point side{segment.b.x - segment.a.x, segment.b.y - segment.a.y};
   const double cross = to.x * side.y - to.y * side.x;
   constexpr double kParallel = 0.9;  // sine of the angle between `to` and the segment
   if (std::abs(cross) < kParallel * std::hypot(side.x, side.y) || cross == 0) return std::nullopt;
-  const Vertex from{segment.a.x - p.x, segment.a.y - p.y};
+  const Point from{segment.a.x - p.x, segment.a.y - p.y};
   const double along = (from.x * to.y - from.y * to.x) / cross;
   if (along < 0 || along > 1) return std::nullopt;
   return (from.x * side.y - from.y * side.x) / cross;
@@ -87,11 +87,11 @@ std::optional<double> DistanceAlong(Vertex p, Vertex to, const Segment& segment)
 
 // The distance from `p`, which lies on the segment from `a` to `b`, to the nearest line beside it;
 // `most` if none is as near.
-double RoomAt(Vertex p, Vertex a, Vertex b, double most, const SegmentGrid& grid, size_t& looks) {
+double RoomAt(Point p, Point a, Point b, double most, const SegmentGrid& grid, size_t& looks) {
   const double length = Distance(a, b);
   double room = most;
   for (const double side : {1.0, -1.0}) {
-    const Vertex to{side * (a.y - b.y) / length, side * (b.x - a.x) / length};
+    const Point to{side * (a.y - b.y) / length, side * (b.x - a.x) / length};
     grid.ForEachOnTravel(p, {p.x + most * to.x, p.y + most * to.y}, looks, [&](uint32_t s) {
       const double distance = DistanceAlong(p, to, grid.segments()[s]).value_or(most);
       constexpr double kItselfMm = 0.005;
@@ -105,14 +105,14 @@ double RoomAt(Vertex p, Vertex a, Vertex b, double most, const SegmentGrid& grid
 // The usual distance between the path and the lines beside it: the median at points along it.
 double RoomOf(const Outline& outline, double most, const SegmentGrid& grid, size_t& looks) {
   constexpr int kPoints = 16;
-  const std::vector<Vertex>& points = outline.shape();
+  const std::vector<Point>& points = outline.shape();
   double length = 0;
   for (size_t k = 0; k + 1 < points.size(); ++k) length += Distance(points[k], points[k + 1]);
   std::vector<double> rooms;
   double at = 0;
   for (size_t k = 0; k + 1 < points.size(); ++k) {
-    const Vertex a = points[k];
-    const Vertex b = points[k + 1];
+    const Point a = points[k];
+    const Point b = points[k + 1];
     const double own = Distance(a, b);
     const double next = (static_cast<double>(rooms.size()) + 0.5) / kPoints * length;
     at += own;
@@ -141,7 +141,7 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
     if (usual < 0) usual = UsualFlow(file, layer, outlines);
     if (FlowOf(file, block) >= kLeastFilled * usual) continue;
     thin.push_back(path);
-    const std::vector<Vertex>& points = outlines[path].shape();
+    const std::vector<Point>& points = outlines[path].shape();
     for (size_t k = 0; k + 1 < points.size(); ++k)
       lines.push_back({points[k], points[k + 1], path});
   }

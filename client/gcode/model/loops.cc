@@ -20,9 +20,9 @@ constexpr double kNeighborSlack = 0.45;
 
 // A point on the right of the middle of segment `k`, where a neighbor would run.
 Segment ProbeAt(const Outline& outline, size_t k) {
-  const Vertex a = outline.shape()[k];
-  const Vertex b = outline.shape()[k + 1];
-  const Vertex middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
+  const Point a = outline.shape()[k];
+  const Point b = outline.shape()[k + 1];
+  const Point middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
   const double length = Distance(a, b);
   if (!(length > 0)) return {middle, middle, 0};
   const double reach = 0.9 * outline.width_mm / length;
@@ -78,7 +78,7 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
   std::vector<bool> in_two(outlines.size(), false);
   std::vector<Segment> segments;
   const auto add = [&](uint32_t path, uint32_t loop) {
-    const std::vector<Vertex>& shape = outlines[path].shape();
+    const std::vector<Point>& shape = outlines[path].shape();
     for (size_t k = 0; k + 1 < shape.size(); ++k)
       segments.push_back({shape[k], shape[k + 1], loop});
   };

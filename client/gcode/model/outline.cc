@@ -57,14 +57,14 @@ double WidthOf(const GcodeFile& file, const Block& block) {
 constexpr double kMostRadiusMm = 1e4;
 constexpr double kBentToleranceMm = 0.01;
 
-std::vector<Vertex> BentShape(const GcodeFile& file, const Block& block) {
+std::vector<Point> BentShape(const GcodeFile& file, const Block& block) {
   const MachineState& mode = file.modes[block.mode];
-  std::vector<Vertex> shape = {mode.InMm(block.first)};
+  std::vector<Point> shape = {mode.InMm(block.first)};
   for (const BodySegment& segment : ReadBody(file, block).segments) {
     if (segment.command >= 2) {
-      const Vertex from = mode.InMm(segment.from);
-      for (const Vertex& point : ArcPoints(ArcCommand(segment), segment.from, segment.to,
-                                           mode.UnitMm(), kBentToleranceMm)) {
+      const Point from = mode.InMm(segment.from);
+      for (const Point& point : ArcPoints(ArcCommand(segment), segment.from, segment.to,
+                                          mode.UnitMm(), kBentToleranceMm)) {
         if (Distance(from, point) < 2 * kMostRadiusMm) shape.push_back(point);
       }
     }
@@ -73,7 +73,7 @@ std::vector<Vertex> BentShape(const GcodeFile& file, const Block& block) {
   return shape;
 }
 
-double LengthOf(const std::vector<Vertex>& points) {
+double LengthOf(const std::vector<Point>& points) {
   double length = 0;
   for (size_t k = 1; k < points.size(); ++k) length += Distance(points[k - 1], points[k]);
   return length;

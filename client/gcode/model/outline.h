@@ -5,23 +5,23 @@
 
 #include <vector>
 
-#include "client/gcode/machine/vertex.h"
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/gcode_file.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
 struct Outline {
   // The ends of its extruding segments, in the file's order: n + 1 for n segments. An arc is one
   // segment.
-  std::vector<Vertex> points;
+  std::vector<Point> points;
 
   // The same with points on its arcs, near enough to replace them by lines; empty if it has
   // none.
-  std::vector<Vertex> bent;
+  std::vector<Point> bent;
 
   // The printed shape, which does not say where the path may begin.
-  const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
+  const std::vector<Point>& shape() const { return bent.empty() ? points : bent; }
 
   // Its shape ends where it began, or no more than LoopGapMm short of it.
   bool is_loop = false;

@@ -18,7 +18,7 @@ std::vector<Position> BendsOf(const BodySegment& segment) {
   constexpr double kTolerance = 0.01;
   std::vector<Position> bends;
   if (segment.command < 2) return bends;
-  for (const Vertex& point :
+  for (const Point& point :
        ArcPoints(ArcCommand(segment), segment.from, segment.to, 1, kTolerance)) {
     bends.push_back({RoundedWord(point.x), RoundedWord(point.y), segment.from.z});
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/gcode/machine/interpreter.h"
-#include "client/gcode/machine/vertex.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -18,7 +18,7 @@ inline Decimal RoundedWord(double value) {
 }
 
 // A point in mm, in words of `unit_mm`; at no height.
-inline Position InWords(Vertex mm, double unit_mm) {
+inline Position InWords(Point mm, double unit_mm) {
   return {RoundedWord(mm.x / unit_mm), RoundedWord(mm.y / unit_mm), 0};
 }
 

@@ -7,11 +7,11 @@
 namespace traverse::gcode {
 namespace {
 
-double Turn(Vertex a, Vertex b, Vertex c) {
+double Turn(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-double SquaredToPoint(const Segment& s, Vertex p) {
+double SquaredToPoint(const Segment& s, Point p) {
   const double dx = s.b.x - s.a.x;
   const double dy = s.b.y - s.a.y;
   const double length2 = dx * dx + dy * dy;
@@ -26,7 +26,7 @@ double SquaredToPoint(const Segment& s, Vertex p) {
 
 }  // namespace
 
-bool Cross(Vertex a, Vertex b, Vertex c, Vertex d) {
+bool Cross(Point a, Point b, Point c, Point d) {
   return Turn(a, b, c) * Turn(a, b, d) < 0 && Turn(c, d, a) * Turn(c, d, b) < 0;
 }
 

@@ -17,8 +17,8 @@
 namespace traverse::gcode {
 
 struct Segment {
-  Vertex a;
-  Vertex b;
+  Point a;
+  Point b;
   uint32_t path = 0;  // index of its outline
 };
 
@@ -26,7 +26,7 @@ struct Segment {
 double SquaredDistance(const Segment& s, const Segment& t);
 
 // True if the interiors of the segments cross at one point.
-bool Cross(Vertex a, Vertex b, Vertex c, Vertex d);
+bool Cross(Point a, Point b, Point c, Point d);
 
 // Built once; O(total length of the segments / cell size + cells / 64) in time and memory, where
 // the length is at most kCellsPerSegment cells for each segment.
@@ -60,7 +60,7 @@ class SegmentGrid {
   // Calls visit(s) for all segments that the straight move from `a` to `b` may cross, until it
   // returns false or `looks`, which each call takes one off, is 0.
   template <typename Visit>
-  void ForEachOnTravel(Vertex a, Vertex b, size_t& looks, Visit visit) const;
+  void ForEachOnTravel(Point a, Point b, size_t& looks, Visit visit) const;
 
  private:
   int Column(double x) const;
@@ -89,7 +89,7 @@ class SegmentGrid {
 
   // Calls visit(column, row) for the cells along a segment, each once in a row.
   template <typename Visit>
-  void ForEachCell(Vertex a, Vertex b, Visit visit) const;
+  void ForEachCell(Point a, Point b, Visit visit) const;
   void Fill();
 
   // A segment in a cell.
@@ -151,7 +151,7 @@ class SegmentGrid {
 };
 
 template <typename Visit>
-void SegmentGrid::ForEachCell(Vertex a, Vertex b, Visit visit) const {
+void SegmentGrid::ForEachCell(Point a, Point b, Visit visit) const {
   const int end_column = Column(b.x);
   const int end_row = Row(b.y);
   int last_column = Column(a.x);
@@ -270,7 +270,7 @@ void SegmentGrid::ForEachOccupied(Visit visit) const {
 }
 
 template <typename Visit>
-void SegmentGrid::ForEachOnTravel(Vertex a, Vertex b, size_t& looks, Visit visit) const {
+void SegmentGrid::ForEachOnTravel(Point a, Point b, size_t& looks, Visit visit) const {
   if (columns_ == 0) return;
   bool going_on = looks > 0;
   ForEachCell(a, b, [&](int column, int row) {

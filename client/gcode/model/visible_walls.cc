@@ -17,11 +17,11 @@ bool IsOne(const Outline& outline) {
 
 WallCrowd NoCrowdYet(const std::vector<Outline>& outlines) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vertex low{kFar, kFar};
-  Vertex high{-kFar, -kFar};
+  Point low{kFar, kFar};
+  Point high{-kFar, -kFar};
   for (const Outline& outline : outlines) {
     if (!IsOne(outline)) continue;
-    for (const Vertex& point : outline.shape()) {
+    for (const Point& point : outline.shape()) {
       low = {std::min(low.x, point.x), std::min(low.y, point.y)};
       high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
@@ -45,8 +45,7 @@ std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
     const Outline& outline = outlines[path];
     if (!IsOne(outline) || !crowd.Takes(outline.shape())) continue;
     Wall& wall = walls.emplace_back();
-    wall.points.reserve(outline.shape().size());
-    for (const Vertex& point : outline.shape()) wall.points.push_back({point.x, point.y});
+    wall.points = outline.shape();
     wall.closed = outline.is_loop;
     wall.path = static_cast<int>(path);
   }
@@ -65,11 +64,10 @@ VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines, const std::vect
   }
 }
 
-bool VisibleWalls::Touched(absl::Span<const Vertex> travel) const {
+bool VisibleWalls::Touched(absl::Span<const Point> travel) const {
   // Arcs are chords here, and coordinates are rounded.
   constexpr double kNearerMm = 0.02;
-  std::vector<Point> line;
-  for (const Vertex& point : travel) line.push_back({point.x, point.y});
+  std::vector<Point> line(travel.begin(), travel.end());
   const size_t last = line.size() - 1;
   const Point begin = grid_.WithoutEnds(line[0], line[1]).first;
   line[last] = grid_.WithoutEnds(line[last - 1], line[last]).second;
@@ -129,7 +127,7 @@ double VisibleWalls::DistanceMm(uint32_t wall, Point point, double most_mm) cons
   return std::sqrt(squared);
 }
 
-bool VisibleWalls::IsOnOne(Vertex point) const {
+bool VisibleWalls::IsOnOne(Point point) const {
   constexpr double kBesideMm = 0.05;
   const Segment at{point, point, 0};
   bool found = false;
@@ -138,11 +136,11 @@ bool VisibleWalls::IsOnOne(Vertex point) const {
     found = SquaredDistance(at, SegmentOf(wall.a, wall.b)) <= kBesideMm * kBesideMm;
     return !found;
   };
-  grid_.ForEachOnLine({point.x, point.y}, {point.x, point.y}, visit, kBesideMm);
+  grid_.ForEachOnLine(point, point, visit, kBesideMm);
   return found;
 }
 
-bool VisibleWalls::CrossedByTravel(const std::vector<Vertex>& travel) const {
+bool VisibleWalls::CrossedByTravel(const std::vector<Point>& travel) const {
   std::vector<TravelLine> moves;
   for (size_t i = 1; i < travel.size(); ++i) moves.push_back({travel[i - 1], travel[i]});
   return CrossedByMoves(moves);

@@ -22,8 +22,8 @@ std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines);
 
 // A straight travel move.
 struct TravelLine {
-  Vertex from;
-  Vertex to;
+  Point from;
+  Point to;
 };
 
 class VisibleWalls {
@@ -37,22 +37,22 @@ class VisibleWalls {
 
   // True if the straight move from `a` to `b` crosses one. Ends that lie on a wall, or touch it, do
   // not count. The search uses the same function.
-  bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
+  bool Crossed(Point a, Point b) const { return grid_.Crosses(a, b); }
 
   // True if a move by these points, without its ends, comes nearer to one than half its width, and
   // nearer than both ends, or again after it was away from that of an end: as slicers' own
   // unretracted travel does not. So a move along a wall, from line to line beside it, does not
   // touch it. REQUIRES: two points at the least.
-  bool Touched(absl::Span<const Vertex> travel) const;
+  bool Touched(absl::Span<const Point> travel) const;
 
   // Crossed for a move with bends, near which it is tested too.
-  bool CrossedByTravel(const std::vector<Vertex>& travel) const;
+  bool CrossedByTravel(const std::vector<Point>& travel) const;
 
   // The same for the moves of a travel move, of which some may be left out.
   bool CrossedByMoves(const std::vector<TravelLine>& moves) const;
 
   // True if `point` lies in the middle of one.
-  bool IsOnOne(Vertex point) const;
+  bool IsOnOne(Point point) const;
 
   const WallGrid& grid() const { return grid_; }
 

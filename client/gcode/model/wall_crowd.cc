@@ -16,7 +16,7 @@ constexpr double kLeastPieceMm = 0.1;
 
 }  // namespace
 
-WallCrowd::WallCrowd(Vertex low, Vertex high)
+WallCrowd::WallCrowd(Point low, Point high)
     : low_(low),
       cell_mm_(std::max(
           {kLeastCellMm, (high.x - low.x) / kMostColumns, (high.y - low.y) / kMostColumns})),
@@ -27,13 +27,13 @@ WallCrowd::WallCrowd(Vertex low, Vertex high)
 }
 
 template <typename Visit>
-void WallCrowd::ForEachPiece(const std::vector<Vertex>& line, Visit visit) const {
+void WallCrowd::ForEachPiece(const std::vector<Point>& line, Visit visit) const {
   const auto index = [this](double mm, size_t count) {
     return static_cast<size_t>(std::clamp(mm / cell_mm_, 0.0, static_cast<double>(count - 1)));
   };
   for (size_t i = 1; i < line.size(); ++i) {
-    const Vertex a = line[i - 1];
-    const Vertex b = line[i];
+    const Point a = line[i - 1];
+    const Point b = line[i];
     const double length = Distance(a, b);
     const int pieces = std::max(1, static_cast<int>(std::ceil(length / cell_mm_)));
     for (int k = 0; k < pieces; ++k) {
@@ -45,7 +45,7 @@ void WallCrowd::ForEachPiece(const std::vector<Vertex>& line, Visit visit) const
   }
 }
 
-bool WallCrowd::Takes(const std::vector<Vertex>& line) {
+bool WallCrowd::Takes(const std::vector<Point>& line) {
   const auto most = static_cast<float>(kMostMmPerSquareMm * cell_mm_ * cell_mm_);
   std::vector<std::pair<size_t, float>> added;
   bool takes = true;

@@ -18,18 +18,18 @@ class WallCrowd {
   static constexpr double kMostMmPerSquareMm = 40;
 
   // For walls in the box from `low` to `high`. REQUIRES: low <= high, both in x and in y.
-  WallCrowd(Vertex low, Vertex high);
+  WallCrowd(Point low, Point high);
 
   // Adds the polyline and returns true if there is room for it everywhere; else changes nothing.
   // O(points + length).
-  bool Takes(const std::vector<Vertex>& line);
+  bool Takes(const std::vector<Point>& line);
 
  private:
   // Calls visit(cell, length in mm) for short pieces of the line.
   template <typename Visit>
-  void ForEachPiece(const std::vector<Vertex>& line, Visit visit) const;
+  void ForEachPiece(const std::vector<Point>& line, Visit visit) const;
 
-  Vertex low_;
+  Point low_;
   double cell_mm_;
   size_t columns_;
   size_t rows_;

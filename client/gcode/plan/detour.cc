@@ -11,9 +11,9 @@ double Written(double mm) { return std::round(mm * 1000) / 1000; }
 }  // namespace
 
 // The shortest detour passes corners by next to nothing, and rounding may put it on the other side.
-std::vector<Vertex> Detours::Around(Vertex a, Vertex b) const {
-  std::vector<Vertex> travel = {a};
-  for (const Point& bend : detours_.Around({a.x, a.y}, {b.x, b.y})) {
+std::vector<Point> Detours::Around(Point a, Point b) const {
+  std::vector<Point> travel = {a};
+  for (const Point& bend : detours_.Around(a, b)) {
     travel.push_back({Written(bend.x), Written(bend.y)});
   }
   if (travel.size() == 1) return {};

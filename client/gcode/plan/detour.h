@@ -23,7 +23,7 @@ class Detours {
 
   // The points to pass from `a` to `b` so that no visible wall is crossed, in whole micrometres.
   // Empty if the straight move crosses none, and if no detour was found.
-  std::vector<Vertex> Around(Vertex a, Vertex b) const;
+  std::vector<Point> Around(Point a, Point b) const;
 
  private:
   // A point this close to the middle of a wall lies on it.

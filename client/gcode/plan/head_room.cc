@@ -46,7 +46,7 @@ std::vector<size_t> PassesOf(const GcodeFile& file) {
 // Follows a file for both parts of the head.
 class Follower {
  public:
-  Follower(const GcodeFile& file, Vertex low, Vertex high)
+  Follower(const GcodeFile& file, Point low, Point high)
       : interpreter_(file.text),
         tip_(
             low, high,
@@ -78,9 +78,9 @@ class Follower {
     const MachineState& machine = interpreter_.state();
     const double unit = machine.UnitMm();
     const Position& to = machine.at;
-    std::vector<Vertex> points = {machine.InMm(step.from)};
+    std::vector<Point> points = {machine.InMm(step.from)};
     if (step.arc) {
-      for (const Vertex& p : ArcPoints(step.command, step.from, to, unit, kArcToleranceMm)) {
+      for (const Point& p : ArcPoints(step.command, step.from, to, unit, kArcToleranceMm)) {
         points.push_back(p);
       }
     }
@@ -109,9 +109,9 @@ class Follower {
 HeadRoom::HeadRoom(const GcodeFile& file) {
   std::vector<size_t> passes = PassesOf(file);
   if (passes.empty() || file.ends.empty()) return;
-  Vertex low = file.ends.front();
-  Vertex high = low;
-  for (const Vertex& end : file.ends) {
+  Point low = file.ends.front();
+  Point high = low;
+  for (const Point& end : file.ends) {
     low = {std::min(low.x, end.x), std::min(low.y, end.y)};
     high = {std::max(high.x, end.x), std::max(high.y, end.y)};
   }

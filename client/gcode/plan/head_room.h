@@ -21,7 +21,7 @@ struct Room {
   RoomMap tip;   // for the nozzle and its cone
   RoomMap head;  // for what hangs beside it, higher
 
-  bool IsClear(Vertex a, double z_a_mm, Vertex b, double z_b_mm) const {
+  bool IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const {
     return tip.IsClear(a, z_a_mm, b, z_b_mm) && head.IsClear(a, z_a_mm, b, z_b_mm);
   }
 };

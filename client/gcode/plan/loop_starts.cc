@@ -13,7 +13,7 @@ constexpr double kMinCornerRadians = 0.5;
 constexpr double kCornerShare = 0.8;
 
 // [k] how far along the loop its vertex k is; last, its whole length.
-std::vector<double> LengthsUpTo(absl::Span<const Vertex> loop) {
+std::vector<double> LengthsUpTo(absl::Span<const Point> loop) {
   std::vector<double> lengths = {0};
   for (size_t k = 0; k < loop.size(); ++k) {
     lengths.push_back(lengths.back() + Distance(loop[k], loop[(k + 1) % loop.size()]));
@@ -23,14 +23,14 @@ std::vector<double> LengthsUpTo(absl::Span<const Vertex> loop) {
 
 }  // namespace
 
-std::vector<uint32_t> SharpCorners(absl::Span<const Vertex> loop) {
+std::vector<uint32_t> SharpCorners(absl::Span<const Point> loop) {
   const size_t n = loop.size();
   std::vector<double> turn(n);
   double sharpest = 0;
   for (size_t k = 0; k < n; ++k) {
-    const Vertex a = loop[(k + n - 1) % n];
-    const Vertex b = loop[k];
-    const Vertex c = loop[(k + 1) % n];
+    const Point a = loop[(k + n - 1) % n];
+    const Point b = loop[k];
+    const Point c = loop[(k + 1) % n];
     const double cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
     const double dot = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
     turn[k] = std::abs(std::atan2(cross, dot));
@@ -45,7 +45,7 @@ std::vector<uint32_t> SharpCorners(absl::Span<const Vertex> loop) {
   return corners;
 }
 
-std::vector<uint32_t> ThinnedStarts(absl::Span<const Vertex> loop, std::vector<uint32_t> starts) {
+std::vector<uint32_t> ThinnedStarts(absl::Span<const Point> loop, std::vector<uint32_t> starts) {
   assert(!loop.empty());
   const bool all = starts.empty();
   if ((all ? loop.size() : starts.size()) <= kMostStarts) return starts;

@@ -14,7 +14,7 @@ namespace {
 
 // The vertices of a closed outline. The last point is the first again, or lies so near to it that
 // to begin there would only cross the gap first.
-absl::Span<const Vertex> ContourVertices(const Outline& outline) {
+absl::Span<const Point> ContourVertices(const Outline& outline) {
   return absl::MakeConstSpan(outline.points).first(outline.points.size() - 1);
 }
 
@@ -101,7 +101,7 @@ bool PathRules::MayTurnRound(size_t path) const {
 // Its direction is all that says which way round such an arc goes, as both its ends are one point.
 bool PathRules::HasFullCircle(size_t path) const {
   if ((BlockOf(path).flags & kBlockArcs) == 0) return false;
-  const std::vector<Vertex>& points = outlines_[path].points;
+  const std::vector<Point>& points = outlines_[path].points;
   return std::adjacent_find(points.begin(), points.end()) != points.end();
 }
 
@@ -115,7 +115,7 @@ PathRule PathRules::RuleOf(size_t path) const {
   } else if (rule.pinned || outline.one_start || !MayBeginAnywhere(path)) {
     rule.entries = {0};
   } else {
-    const absl::Span<const Vertex> loop = ContourVertices(outline);
+    const absl::Span<const Point> loop = ContourVertices(outline);
     const bool at_corners = policy_ == Policy::kBalanced &&
                             outline.feature != Feature::kInnerWall && IsWall(outline.feature);
     rule.entries = ThinnedStarts(loop, at_corners ? SharpCorners(loop) : std::vector<uint32_t>());

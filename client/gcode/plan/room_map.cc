@@ -31,7 +31,7 @@ RoomHeight RoomMap::At(int column, int row) const {
   return found->second[static_cast<size_t>(row % kSide * kSide + column % kSide)];
 }
 
-bool RoomMap::IsClear(Vertex a, double z_a_mm, Vertex b, double z_b_mm) const {
+bool RoomMap::IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const {
   if (empty() || InRoomHeight(std::min(z_a_mm, z_b_mm)) + kSlack >= highest_) return true;
   // Straight down it is at both ends.
   if (a == b) z_a_mm = z_b_mm = std::min(z_a_mm, z_b_mm);
@@ -54,7 +54,7 @@ void RoomBuilder::Window::Add(int column, int row) {
   row_end = std::max(row_end, row + 1);
 }
 
-RoomBuilder::RoomBuilder(Vertex low, Vertex high, const HeadPart& part) : part_(part) {
+RoomBuilder::RoomBuilder(Point low, Point high, const HeadPart& part) : part_(part) {
   const double width = std::max(high.x - low.x, 0.0) + 2 * part.cell_mm;
   const double depth = std::max(high.y - low.y, 0.0) + 2 * part.cell_mm;
   part_.cell_mm = std::max({part.cell_mm, std::sqrt(width * depth / kMostCells),
@@ -86,7 +86,7 @@ RoomBuilder::RoomBuilder(Vertex low, Vertex high, const HeadPart& part) : part_(
 // take(column, row, share) for points on the piece, as near to each other as cells are wide, or
 // nearer. What is outside of the box is left out.
 template <typename Take>
-void RoomBuilder::ForEachCell(Vertex a, Vertex b, Take take) const {
+void RoomBuilder::ForEachCell(Point a, Point b, Take take) const {
   const double cell = part_.cell_mm;
   double begin = 0;
   double end = 1;
@@ -116,7 +116,7 @@ void RoomBuilder::ForEachCell(Vertex a, Vertex b, Take take) const {
   }
 }
 
-void RoomBuilder::Print(Vertex a, Vertex b, double z_mm) {
+void RoomBuilder::Print(Point a, Point b, double z_mm) {
   const RoomHeight z = InRoomHeight(z_mm);
   ForEachCell(a, b, [&](int column, int row, double) {
     RoomHeight& top = now_[Index(column, row)];
@@ -125,7 +125,7 @@ void RoomBuilder::Print(Vertex a, Vertex b, double z_mm) {
   });
 }
 
-void RoomBuilder::Visit(Vertex a, double z_a_mm, Vertex b, double z_b_mm) {
+void RoomBuilder::Visit(Point a, double z_a_mm, Point b, double z_b_mm) {
   if (a == b) z_a_mm = z_b_mm = std::min(z_a_mm, z_b_mm);
   pass_low_ = std::min(pass_low_, InRoomHeight(std::min(z_a_mm, z_b_mm)));
   ForEachCell(a, b, [&](int column, int row, double share) {

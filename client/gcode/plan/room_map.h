@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
-#include "client/gcode/machine/vertex.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
 
@@ -36,7 +36,7 @@ struct HeadPart {
 class RoomMap {
  public:
   // True if a move between the two points, at these heights, is high enough everywhere.
-  bool IsClear(Vertex a, double z_a_mm, Vertex b, double z_b_mm) const;
+  bool IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const;
 
   bool empty() const { return tiles_.empty(); }
   size_t tiles() const { return tiles_.size(); }
@@ -49,7 +49,7 @@ class RoomMap {
 
   RoomHeight At(int column, int row) const;
 
-  Vertex low_;
+  Point low_;
   double cell_mm_ = 1;
   RoomHeight highest_ = 0;
   absl::flat_hash_map<uint32_t, Tile> tiles_;  // by column << 16 | row of tiles
@@ -60,11 +60,11 @@ class RoomMap {
 class RoomBuilder {
  public:
   // Of what is printed in the box between `low` and `high`.
-  RoomBuilder(Vertex low, Vertex high, const HeadPart& part);
+  RoomBuilder(Point low, Point high, const HeadPart& part);
 
   // A straight piece of a path, or of a move of the file.
-  void Print(Vertex a, Vertex b, double z_mm);
-  void Visit(Vertex a, double z_a_mm, Vertex b, double z_b_mm);
+  void Print(Point a, Point b, double z_mm);
+  void Visit(Point a, double z_a_mm, Point b, double z_b_mm);
 
   // The pass ends: how high the head has to be in it where it was, and between. What is printed in
   // it stands from now on. Empty if that takes more steps than are left of `steps`.
@@ -89,7 +89,7 @@ class RoomBuilder {
   };
 
   template <typename Take>
-  void ForEachCell(Vertex a, Vertex b, Take take) const;
+  void ForEachCell(Point a, Point b, Take take) const;
   size_t Index(int column, int row) const {
     return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
   }
@@ -99,7 +99,7 @@ class RoomBuilder {
   void Forget();
 
   HeadPart part_;
-  Vertex low_;
+  Point low_;
   int columns_ = 1;
   int rows_ = 1;
   int reach_ = 0;                   // cells

@@ -18,7 +18,7 @@ namespace {
 constexpr size_t kBatch = 16;
 
 void AddOutline(const Outline& outline, uint32_t island, IslandMap& map) {
-  const std::vector<Vertex>& points = outline.shape();
+  const std::vector<Point>& points = outline.shape();
   for (size_t i = 1; i < points.size() && !map.full(); ++i) {
     map.AddLine(points[i - 1].x, points[i - 1].y, points[i].x, points[i].y, island);
   }

@@ -213,12 +213,12 @@ double NewTravelSeconds(const GcodeFile& file, uint32_t before, const PlannedTra
                              model.accel_mm_s2);
   }
   TravelPlanner planner(file, before, model);
-  Vertex at = planned.from;
-  const auto go = [&](Vertex to) {
+  Point at = planned.from;
+  const auto go = [&](Point to) {
     planner.Go(to.x - at.x, to.y - at.y);
     at = to;
   };
-  for (const Vertex& bend : planned.via) go(bend);
+  for (const Point& bend : planned.via) go(bend);
   go(planned.to);
   return planner.Seconds();
 }

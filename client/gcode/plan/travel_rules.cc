@@ -46,7 +46,7 @@ void ForEachTravel(const GcodeFile& file, const Layer& layer, Visit visit) {
 
 void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines,
            const VisibleWalls& walls, double threshold_mm, RetractionCounts& counts) {
-  ForEachTravel(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t b) {
+  ForEachTravel(file, layer, [&](const Block& block, Point from, Point to, uint32_t b) {
     if (Distance(from, to) < threshold_mm || walls.Crossed(from, to)) return;
     const Feature feature = outlines[b - layer.first_block].feature;
     RetractionCount& count = counts[static_cast<size_t>(feature)];
@@ -62,7 +62,7 @@ constexpr double kLongestOpenSlackMm = 0.95;
 double LongestOpenMm(const GcodeFile& file) {
   double longest = 0;
   for (const Layer& layer : file.layers) {
-    ForEachTravel(file, layer, [&](const Block& block, Vertex, Vertex, uint32_t) {
+    ForEachTravel(file, layer, [&](const Block& block, Point, Point, uint32_t) {
       if ((block.link & kLinkRetracts) != 0) return;
       longest = std::max(longest, static_cast<double>(block.travel_mm));
     });
@@ -93,7 +93,7 @@ double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) 
   if (file.profile.retract_before_travel) return *file.profile.retract_before_travel;
   double shortest = 1e9;
   for (const Layer& layer : file.layers) {
-    ForEachTravel(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, layer, [&](const Block& block, Point from, Point to, uint32_t) {
       if ((block.link & kLinkRetracts) != 0) shortest = std::min(shortest, Distance(from, to));
     });
   }
@@ -101,7 +101,7 @@ double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) 
   int64_t crossing = 0;
   for (const size_t i : sample) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
-    ForEachTravel(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, file.layers[i], [&](const Block& block, Point from, Point to, uint32_t) {
       const double length = Distance(from, to);
       const bool straight = static_cast<double>(block.travel_mm) < length * 1.01 + 0.01;
       if ((block.link & kLinkRetracts) == 0 && straight && length > kUsualThresholdMm &&
@@ -129,7 +129,7 @@ bool AvoidsWalls(const GcodeFile& file) {
   int64_t bent = 0;
   for (const size_t i : SampledLayers(file)) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
-    ForEachTravel(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, file.layers[i], [&](const Block& block, Point from, Point to, uint32_t) {
       if (!walls.Crossed(from, to)) return;
       ++crossing;
       bent += static_cast<double>(block.travel_mm) > Distance(from, to) * 1.01 + 0.01 ? 1 : 0;
@@ -221,12 +221,12 @@ bool TravelRules::AlwaysRetracts(Feature feature) const {
   return count.total() > 0 && count.Mostly();
 }
 
-bool TravelRules::Hides(Vertex a, Vertex b, Feature feature) const {
-  const Vertex ends[] = {a, b};
+bool TravelRules::Hides(Point a, Point b, Feature feature) const {
+  const Point ends[] = {a, b};
   return Hides(ends, feature);
 }
 
-bool TravelRules::Hides(absl::Span<const Vertex> line, Feature feature) const {
+bool TravelRules::Hides(absl::Span<const Point> line, Feature feature) const {
   assert(line.size() >= 2);
   if (habit_.hidden == nullptr || IsVisibleWall(feature)) return false;
   double length = 0;
@@ -239,10 +239,10 @@ bool TravelRules::Hides(absl::Span<const Vertex> line, Feature feature) const {
   return length <= habit_.hidden->longest_mm();
 }
 
-std::vector<Vertex> TravelRules::HiddenBends(Vertex a, Vertex b, Feature feature) const {
+std::vector<Point> TravelRules::HiddenBends(Point a, Point b, Feature feature) const {
   if (!within_ || IsVisibleWall(feature) || Distance(a, b) > habit_.hidden->longest_mm()) return {};
   if (!habit_.hidden->Hides(layer_, b)) return {};
-  std::vector<Vertex> line = within_->Around(a, b);
+  std::vector<Point> line = within_->Around(a, b);
   if (line.empty()) return {};
   line.insert(line.begin(), a);
   line.push_back(b);
@@ -250,19 +250,19 @@ std::vector<Vertex> TravelRules::HiddenBends(Vertex a, Vertex b, Feature feature
   return {line.begin() + 1, line.end() - 1};
 }
 
-bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
+bool TravelRules::Retracts(Point a, Point b, Feature feature) const {
   return TravelOf(a, b, feature).retracts;
 }
 
-PlannedTravel TravelRules::TravelOf(Vertex a, Vertex b, Feature feature) const {
+PlannedTravel TravelRules::TravelOf(Point a, Point b, Feature feature) const {
   PlannedTravel travel;
   travel.from = a;
   travel.to = b;
   travel.mm = Distance(a, b);
   travel.crosses = walls_.Crossed(a, b);
-  const Vertex straight[] = {a, b};
-  absl::Span<const Vertex> line = straight;
-  std::vector<Vertex> bent;
+  const Point straight[] = {a, b};
+  absl::Span<const Point> line = straight;
+  std::vector<Point> bent;
   if (travel.crosses && detours_) {
     travel.via = detours_->Around(a, b);
     travel.crosses = travel.via.empty();

@@ -77,12 +77,12 @@ RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow 
 
 // A new travel move as it is written.
 struct PlannedTravel {
-  Vertex from;
-  Vertex to;
+  Point from;
+  Point to;
   bool retracts = false;
-  bool crosses = false;     // a visible wall, and there is no detour
-  double mm = 0;            // including bends
-  std::vector<Vertex> via;  // its bends, around walls; empty: straight
+  bool crosses = false;    // a visible wall, and there is no detour
+  double mm = 0;           // including bends
+  std::vector<Point> via;  // its bends, around walls; empty: straight
 };
 
 // The same for one layer: top and bottom layers often retract where others do not.
@@ -93,22 +93,22 @@ class TravelRules {
               const std::vector<Outline>& outlines, const VisibleWalls& walls);
 
   // Whether the move from `a` to `b`, where a path of `feature` begins, retracts.
-  bool Retracts(Vertex a, Vertex b, Feature feature) const;
+  bool Retracts(Point a, Point b, Feature feature) const;
 
   // How to write the move about which Retracts decides.
-  PlannedTravel TravelOf(Vertex a, Vertex b, Feature feature) const;
+  PlannedTravel TravelOf(Point a, Point b, Feature feature) const;
 
   // Whether nobody can see the straight move from `a`, where the head really leaves the path
   // before, to `b`, where a path of `feature` begins, and it may do without a retraction for that.
   // None is hidden that leads to a visible wall.
-  bool Hides(Vertex a, Vertex b, Feature feature) const;
+  bool Hides(Point a, Point b, Feature feature) const;
 
   // The same of a move with bends, by all its points. REQUIRES: there are two at the least.
-  bool Hides(absl::Span<const Vertex> line, Feature feature) const;
+  bool Hides(absl::Span<const Point> line, Feature feature) const;
 
   // The bends by which the same move is hidden where the straight one is not; empty if there are
   // none, and where none are to be.
-  std::vector<Vertex> HiddenBends(Vertex a, Vertex b, Feature feature) const;
+  std::vector<Point> HiddenBends(Point a, Point b, Feature feature) const;
 
   // Whether moves to paths of `feature` always retract, as far as the file shows.
   // REQUIRES: habit.crossing_matters, as otherwise all of them do, or none.

@@ -281,11 +281,11 @@ bool BlockBuilder::GoesOn() const {
     return false;
   }
   const MachineState& mode = file_.modes[block.mode];
-  Vertex at = mode.InMm(block.first);
+  Point at = mode.InMm(block.first);
   if (Distance(at, mode.InMm(block.last)) > kBesideMm) return false;
   double left = link_.first_move_mm;
   for (uint32_t i = 0; i < block.end_count && left > 0; ++i) {
-    const Vertex to = file_.ends[block.first_end + i];
+    const Point to = file_.ends[block.first_end + i];
     const double length = Distance(at, to);
     const double share = length > left ? left / length : 1;
     at = {at.x + (to.x - at.x) * share, at.y + (to.y - at.y) * share};

@@ -28,15 +28,15 @@ bool BlockBuilder::TailIsOwn() const {
   constexpr double kBesideMm = 0.05;
   const Block& path = before_tail_;
   const MachineState& mode = file_.modes[path.mode];
-  const Vertex tail = mode.InMm(Last().last);
+  const Point tail = mode.InMm(Last().last);
   if (Distance(tail, mode.InMm(path.first)) <= kBesideMm) return true;
-  const Vertex end = mode.InMm(path.last);
-  const Vertex before =
+  const Point end = mode.InMm(path.last);
+  const Point before =
       path.end_count > 1 ? file_.ends[path.first_end + path.end_count - 2] : mode.InMm(path.first);
   const double length = Distance(before, end);
   if (!(length > 0)) return false;
   const double reach = Distance(end, tail) / length;
-  const Vertex on{end.x + (end.x - before.x) * reach, end.y + (end.y - before.y) * reach};
+  const Point on{end.x + (end.x - before.x) * reach, end.y + (end.y - before.y) * reach};
   return Distance(on, tail) <= kBesideMm;
 }
 

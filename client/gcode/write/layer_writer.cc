@@ -151,7 +151,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   if (own != place && neighbors && SaysLabelsOnly(file_, own) && SaysLabelsOnly(file_, place)) {
     place = own;
   }
-  const Vertex end = file_.modes[to.block().mode].InMm(from.last());
+  const Point end = file_.modes[to.block().mode].InMm(from.last());
   LinkForm form = links_.FormOf(from.placement(), end, to.placement(), place);
   if (!as_sliced) links_.Hide(from.placement(), to.placement(), /*bends=*/true, form);
   form.without_progress = !form.boundary || moved;

@@ -14,10 +14,10 @@ namespace {
 constexpr double kToleranceMm = 0.02;
 
 // [segment of the block] the points between its ends; empty if no segment has any.
-std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
-                                                     const gcode::Block& block) {
+std::vector<std::vector<Point>> PointsOnArcs(const GcodeFile& file,
+                                                    const gcode::Block& block) {
   const double unit = file.modes[block.mode].UnitMm();
-  std::vector<std::vector<gcode::Vertex>> on_arcs;
+  std::vector<std::vector<Point>> on_arcs;
   bool any = false;
   gcode::Interpreter interpreter(std::string_view(file.text).substr(0, block.end), block.begin,
                                  gcode::StateAt(file, block));
@@ -25,7 +25,7 @@ std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
     if (step.kind != gcode::StepKind::kExtrude && step.kind != gcode::StepKind::kZeroExtrude) {
       continue;
     }
-    std::vector<gcode::Vertex>& points = on_arcs.emplace_back();
+    std::vector<Point>& points = on_arcs.emplace_back();
     if (!step.arc) continue;
     points = gcode::ArcPoints(step.command, step.from, interpreter.state().at, unit, kToleranceMm);
     any = any || !points.empty();
@@ -35,14 +35,14 @@ std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
 }
 
 // Inserts the points into the path. Returns the new positions of its vertices.
-std::vector<size_t> Bend(const std::vector<std::vector<gcode::Vertex>>& on_arcs, DrawnPath& path) {
+std::vector<size_t> Bend(const std::vector<std::vector<Point>>& on_arcs, DrawnPath& path) {
   std::vector<DrawnPoint> bent;
   std::vector<size_t> moved_to;
   for (size_t i = 0; i < path.points.size(); ++i) {
     moved_to.push_back(bent.size());
     bent.push_back(path.points[i]);
     if (i >= on_arcs.size()) continue;
-    for (const gcode::Vertex& at : on_arcs[i]) bent.push_back({at.x, at.y});
+    for (const Point& at : on_arcs[i]) bent.push_back({at.x, at.y});
   }
   path.points = std::move(bent);
   return moved_to;

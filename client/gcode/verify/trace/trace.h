@@ -17,14 +17,9 @@
 
 #include "client/gcode/verify/machine/verify_machine.h"
 #include "client/gcode/verify/trace/path_class.h"
+#include "engine/model/point.h"
 
 namespace traverse::gcode {
-
-// In mm.
-struct Point {
-  double x = 0;
-  double y = 0;
-};
 
 struct TraceSegment {
   uint64_t digest = 0;      // of a deposit: VerifyLine

@@ -23,7 +23,7 @@ struct PolishedLayer {
   std::vector<Outline> outlines;
   LayerFreedom freedom;
 
-  void Add(std::vector<Vertex> points, const PathRule& rule) {
+  void Add(std::vector<Point> points, const PathRule& rule) {
     Outline& outline = outlines.emplace_back();
     outline.points = std::move(points);
     outline.closed = rule.contour;
@@ -47,8 +47,8 @@ struct PolishedLayer {
     return order;
   }
 
-  Vertex End(const Placement& at, bool begin) const {
-    const std::vector<Vertex>& points = outlines[at.block - kFirst].points;
+  Point End(const Placement& at, bool begin) const {
+    const std::vector<Point>& points = outlines[at.block - kFirst].points;
     if (at.closed) return points[at.entry];
     return (at.entry == 0) == begin ? points.front() : points.back();
   }

@@ -30,7 +30,7 @@ class RestedStack {
 
   double TravelOf(const std::vector<std::optional<uint32_t>>& row) const {
     double mm = 0;
-    Vertex at{};
+    Point at{};
     for (size_t layer = 0; layer < row.size(); ++layer) {
       const TurnedLayer& of = layers_[layer];
       if (layer > 0) mm += Distance(at, row[layer] ? of.begin[*row[layer]] : of.given_begin);
@@ -51,8 +51,8 @@ class RestedStack {
     for (size_t layer = 1; layer < row.size(); ++layer) {
       const TurnedLayer& of = layers_[layer];
       const TurnedLayer& before = layers_[layer - 1];
-      const Vertex from = row[layer - 1] ? before.end[*row[layer - 1]] : before.given_end;
-      const Vertex to = row[layer] ? of.begin[*row[layer]] : of.given_begin;
+      const Point from = row[layer - 1] ? before.end[*row[layer - 1]] : before.given_end;
+      const Point to = row[layer] ? of.begin[*row[layer]] : of.given_begin;
       const double seconds = Distance(from, to) / 100;
       if (rests_.TooShort(layer, times[layer - 1], {&times[layer], seconds})) return false;
     }
@@ -75,7 +75,7 @@ class RestedStack {
   TurnedLayer LayerAt(size_t layer) {
     const auto first = static_cast<uint32_t>(layer * kIslands);
     const auto point = [first](const Placement& placement) {
-      return Vertex{(placement.block - first) * 10.0, 0};
+      return Point{(placement.block - first) * 10.0, 0};
     };
     const TravelEstimate estimate = [point](size_t, const Placement& from, const Placement& to) {
       const double mm = Distance(point(from), point(to));

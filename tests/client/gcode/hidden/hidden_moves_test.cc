@@ -25,7 +25,7 @@ class InABox : public ::testing::Test {
 
   static void Nothing(Stack&) {}
 
-  static bool Hides(Vertex a, Vertex b, const Adds& here = Nothing, const Adds& below = Nothing,
+  static bool Hides(Point a, Point b, const Adds& here = Nothing, const Adds& below = Nothing,
                     const Adds& above = Nothing, bool leaves_wall = false) {
     Stack stack;
     const Adds layers[] = {below, here, above, Nothing};
@@ -66,8 +66,8 @@ TEST_F(InABox, LongMovesAreNot) {
 
 TEST_F(InABox, HolesOfTheLayerAndOfThoseBesideItAreSeen) {
   const Adds hole = [](Stack& stack) { stack.Wall(8, 8, 4); };
-  const Vertex a{5, 10};
-  const Vertex b{15, 10};
+  const Point a{5, 10};
+  const Point b{15, 10};
   EXPECT_TRUE(Hides(a, b));
   EXPECT_FALSE(Hides(a, b, hole));
   EXPECT_FALSE(Hides(a, b, Nothing, hole));
@@ -95,7 +95,7 @@ TEST_F(InABox, MovesKeepAwayFromWallsThatTheyDoNotLeave) {
   EXPECT_FALSE(Hides({3, 0.15}, {16, 0.15}));
   EXPECT_TRUE(Hides({3, 0.45}, {16, 0.45}));
   EXPECT_FALSE(Hides({0, 5}, {16, 5}));
-  const auto leaving = [](Vertex a, Vertex b) {
+  const auto leaving = [](Point a, Point b) {
     return Hides(a, b, Nothing, Nothing, Nothing, /*leaves_wall=*/true);
   };
   EXPECT_TRUE(leaving({0, 5}, {16, 5}));

@@ -41,7 +41,7 @@ std::string Fast(const std::string& text, double longest_mm = 30) {
 }
 
 // How travel goes, in layer `layer` of `text`, to the path that begins at `to`.
-Goes GoesTo(const std::string& text, size_t layer, Vertex to) {
+Goes GoesTo(const std::string& text, size_t layer, Point to) {
   const std::shared_ptr<GcodeFile> file = testing::Read(text);
   const RetractionHabit habit = HabitOfLooks(*file, 30);
   const std::vector<LinkLook> looks = LooksOfLinks(*file, layer, habit);
@@ -65,7 +65,7 @@ struct Case {
   std::function<void(Stack&)> below;
   std::function<void(Stack&)> here;
   std::function<void(Stack&)> above;
-  Vertex to;
+  Point to;
   Goes goes;
 };
 
@@ -86,7 +86,7 @@ void Slotted(Stack& stack) {
 }
 
 // In the box the travel to the second line leads from (18, 4) to (2, 10).
-const Vertex kSecondLine{2, 10};
+const Point kSecondLine{2, 10};
 
 std::vector<Case> Cases() {
   return {

@@ -9,16 +9,16 @@ namespace traverse::gcode {
 namespace {
 
 // A square of 10 mm, anticlockwise, that ends .1 mm short of its start.
-const std::vector<Vertex> kSquare = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, .1}};
+const std::vector<Point> kSquare = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, .1}};
 
-void ExpectAt(const std::optional<Vertex>& found, double x, double y) {
+void ExpectAt(const std::optional<Point>& found, double x, double y) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->x, x, 1e-9);
   EXPECT_NEAR(found->y, y, 1e-9);
 }
 
 TEST(TurnedDeparture, LeadsToTheSameSideAtEachCorner) {
-  const Vertex within{.3, .2};
+  const Point within{.3, .2};
   ExpectAt(TurnedDeparture(kSquare, 1, within), 9.8, .3);
   ExpectAt(TurnedDeparture(kSquare, 2, within), 9.7, 9.8);
   ExpectAt(TurnedDeparture(kSquare, 3, within), .2, 9.7);
@@ -26,12 +26,12 @@ TEST(TurnedDeparture, LeadsToTheSameSideAtEachCorner) {
 
 // By a third of the angle, as PrusaSlicer does: of 90 degrees within, and of 270 outside.
 TEST(TurnedDeparture, DividesTheAngleAtTheNewStartAsItDid) {
-  const std::vector<Vertex> triangle = {{0, 0}, {10, 0}, {10, 10}, {0, 0}};
+  const std::vector<Point> triangle = {{0, 0}, {10, 0}, {10, 10}, {0, 0}};
   const auto at = [](double angle) {
-    return Vertex{.4 * std::cos(angle * M_PI / 180), .4 * std::sin(angle * M_PI / 180)};
+    return Point{.4 * std::cos(angle * M_PI / 180), .4 * std::sin(angle * M_PI / 180)};
   };
   // The angles of the triangle are 45, 90 and 45 degrees.
-  const Vertex within = at(30);
+  const Point within = at(30);
   ExpectAt(TurnedDeparture(triangle, 1, at(15)), 10 - .4 * .5, .4 * std::sqrt(.75));
   ExpectAt(TurnedDeparture(kSquare, 1, within), 10 - .4 * .5, .4 * std::sqrt(.75));
   ExpectAt(TurnedDeparture(kSquare, 1, at(-90)), 10.4, 0);
@@ -39,7 +39,7 @@ TEST(TurnedDeparture, DividesTheAngleAtTheNewStartAsItDid) {
 }
 
 TEST(TurnedDeparture, IsNoLongerThanTheFirstSegment) {
-  const std::vector<Vertex> points = {{0, 0}, {10, 0}, {10, .25}, {10, 10}, {0, 10}, {0, 0}};
+  const std::vector<Point> points = {{0, 0}, {10, 0}, {10, .25}, {10, 10}, {0, 10}, {0, 0}};
   ExpectAt(TurnedDeparture(points, 1, {.3, .4}), 10 - .2, .15);
 }
 

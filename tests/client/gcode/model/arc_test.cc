@@ -12,22 +12,22 @@ namespace {
 constexpr double kToleranceMm = 0.02;
 
 // What the line `text` draws, from (0, 0) on; its ends included.
-std::vector<Vertex> Drawn(const std::string& text, double& length) {
+std::vector<Point> Drawn(const std::string& text, double& length) {
   Interpreter interpreter(text);
   Step step;
   EXPECT_TRUE(interpreter.Next(step));
   EXPECT_TRUE(step.arc);
   const Position to = interpreter.state().at;
   length = ArcLength(step.command, step.from, to, 1);
-  std::vector<Vertex> points = ArcPoints(step.command, step.from, to, 1, kToleranceMm);
-  points.insert(points.begin(), Vertex{});
+  std::vector<Point> points = ArcPoints(step.command, step.from, to, 1, kToleranceMm);
+  points.insert(points.begin(), Point{});
   points.push_back({ToDouble(to.x), ToDouble(to.y)});
   return points;
 }
 
 struct Sample {
   const char* text;
-  Vertex center;
+  Point center;
   double radius;
   double turns;  // counterclockwise
 };
@@ -37,14 +37,14 @@ class ArcPointsOf : public ::testing::TestWithParam<Sample> {};
 TEST_P(ArcPointsOf, StayOnTheCircleAndTurnItsTravel) {
   const auto& [text, center, radius, turns] = GetParam();
   double length = 0;
-  const std::vector<Vertex> points = Drawn(text, length);
+  const std::vector<Point> points = Drawn(text, length);
 
   EXPECT_NEAR(length, 2 * std::numbers::pi * radius * std::abs(turns), 1e-4);
   ASSERT_GT(points.size(), 3u);
   double turned = 0;
   for (size_t i = 1; i < points.size(); ++i) {
-    const Vertex a = {points[i - 1].x - center.x, points[i - 1].y - center.y};
-    const Vertex b = {points[i].x - center.x, points[i].y - center.y};
+    const Point a = {points[i - 1].x - center.x, points[i - 1].y - center.y};
+    const Point b = {points[i].x - center.x, points[i].y - center.y};
     EXPECT_NEAR(std::hypot(b.x, b.y), radius, 1e-4);
     EXPECT_GE(std::hypot(a.x + b.x, a.y + b.y) / 2, radius - kToleranceMm - 1e-4);
     turned += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);

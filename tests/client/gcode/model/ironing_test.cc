@@ -28,7 +28,7 @@ class CuraLayer {
   }
 
   // A path through the points, with `share` of the flow of a wall.
-  CuraLayer& Path(const std::vector<Vertex>& points, double share) {
+  CuraLayer& Path(const std::vector<Point>& points, double share) {
     constexpr double kFlow = 0.4 * 0.2 / 2.40528;  // of filament of 1.75 mm
     absl::StrAppend(&text_, "G0 F9000 X", points[0].x, " Y", points[0].y, "\nG1 F1800");
     for (size_t k = 1; k < points.size(); ++k) {
@@ -42,7 +42,7 @@ class CuraLayer {
 
   // Lines as long as `size`, each as far from the one before it as `spacing`, and how they join.
   CuraLayer& Zigzag(double size, double spacing, double share) {
-    std::vector<Vertex> points;
+    std::vector<Point> points;
     for (int k = 0; k * spacing < size; ++k) {
       points.push_back({20 + (k % 2 == 0 ? 0 : size), 20 + k * spacing});
       points.push_back({20 + (k % 2 == 0 ? size : 0), 20 + k * spacing});

@@ -35,7 +35,7 @@ TEST(Outline, ACircleOfTwoArcsIsALoopThatBeginsWhereItDoes) {
   EXPECT_EQ(circle.points.size(), 3u);
   EXPECT_TRUE(circle.closed);
   EXPECT_TRUE(circle.one_start);
-  for (const Vertex& point : circle.shape()) {
+  for (const Point& point : circle.shape()) {
     EXPECT_NEAR(Distance(point, {10, 10}), 10, 1e-6);
   }
   EXPECT_GT(circle.shape().size(), 40u);
@@ -74,7 +74,7 @@ TEST(Outline, ArcsInInchesBendInMillimetres) {
   const auto file = Read("G20\nM83\nG1 Z.01 F400\nG1 X1 Y.5\nG3 X0 Y.5 I-.5 J0 E.04\nG1 X2 Y.5\n");
 
   const Outline arc = OutlinesOf(*file).front();
-  for (const Vertex& point : arc.shape()) {
+  for (const Point& point : arc.shape()) {
     EXPECT_NEAR(Distance(point, {12.7, 12.7}), 12.7, 1e-6);
   }
 }

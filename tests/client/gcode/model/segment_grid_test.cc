@@ -19,9 +19,9 @@ std::vector<Segment> RandomSegments(uint64_t seed, double extent_mm) {
   std::vector<Segment> segments;
   for (uint32_t path = 0; path < 25; ++path) {
     const double step = random() < 0.3 ? extent_mm / 2 : 1;
-    Vertex at{random() * extent_mm, random() * extent_mm};
+    Point at{random() * extent_mm, random() * extent_mm};
     for (int k = 0; k < 6; ++k) {
-      const Vertex to{at.x + (random() - 0.5) * step, at.y + (random() - 0.5) * step};
+      const Point to{at.x + (random() - 0.5) * step, at.y + (random() - 0.5) * step};
       segments.push_back({at, to, path});
       at = to;
     }
@@ -92,8 +92,8 @@ TEST(SegmentGridTest, MeetsWhatAWayCrosses) {
     SCOPED_TRACE(seed);
     const std::vector<Segment> segments = RandomSegments(seed, 30);
     const SegmentGrid grid(segments);
-    const Vertex a{-1, static_cast<double>(seed % 30)};
-    const Vertex b{31, static_cast<double>(seed * 7 % 30)};
+    const Point a{-1, static_cast<double>(seed % 30)};
+    const Point b{31, static_cast<double>(seed * 7 % 30)};
     std::set<uint32_t> met;
     size_t looks = 100'000;
     size_t calls = 0;

@@ -50,7 +50,7 @@ TEST(WallCrowd, CountsShortPiecesByTheirNumber) {
 
 TEST(WallCrowd, ALineThatIsACrowdItselfIsRefusedAndTakesNoRoom) {
   WallCrowd crowd({0, 0}, {10, 10});
-  std::vector<Vertex> to_and_fro;
+  std::vector<Point> to_and_fro;
   for (int i = 0; i < 1000; ++i) to_and_fro.push_back({i % 2 == 0 ? 0.0 : 10.0, 5});
 
   EXPECT_FALSE(crowd.Takes(to_and_fro));

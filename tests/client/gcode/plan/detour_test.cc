@@ -17,7 +17,7 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-Outline Wall(const std::vector<Vertex>& points, Feature feature = Feature::kOuterWall) {
+Outline Wall(const std::vector<Point>& points, Feature feature = Feature::kOuterWall) {
   Outline wall;
   wall.points = points;
   wall.closed = wall.exactly_closed = true;
@@ -29,17 +29,17 @@ Outline Square(double x, double y, double side, Feature feature = Feature::kOute
   return Wall({{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}, {x, y}}, feature);
 }
 
-double LengthOf(Vertex a, const std::vector<Vertex>& bends, Vertex b) {
+double LengthOf(Point a, const std::vector<Point>& bends, Point b) {
   double length = 0;
-  for (const Vertex bend : bends) {
+  for (const Point bend : bends) {
     length += Distance(a, bend);
     a = bend;
   }
   return length + Distance(a, b);
 }
 
-bool CrossesNone(const VisibleWalls& walls, Vertex a, const std::vector<Vertex>& bends, Vertex b) {
-  for (const Vertex bend : bends) {
+bool CrossesNone(const VisibleWalls& walls, Point a, const std::vector<Point>& bends, Point b) {
+  for (const Point bend : bends) {
     if (walls.Crossed(a, bend)) return false;
     a = bend;
   }
@@ -57,7 +57,7 @@ TEST(VisibleWalls, AreOuterWallsAndNotTouchedByTravelsThatEndOnThem) {
 
 // A wall with two bays above a floor; the travel leaves the floor and goes past the tip between.
 TEST(VisibleWalls, AreTouchedByTravelThatComesBackToItsOwn) {
-  const auto touches = [](double tip, std::vector<Vertex> travel) {
+  const auto touches = [](double tip, std::vector<Point> travel) {
     Outline bays = Wall({{0, 0}, {20, 0}, {20, 9}, {11, 9}, {10, tip}, {9, 9}, {0, 9}, {0, 0}});
     bays.width_mm = 0.4;
     return VisibleWalls({bays}).Touched(travel);
@@ -79,11 +79,11 @@ TEST(Detours, CrossNoWallAsTheyAreWritten) {
   const Detours detours(walls);
   int found = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vertex a{12.3456 + .0012345 * i, 10};
-    const Vertex b{28.7654, 27.1234 + .0009876 * i};
-    const std::vector<Vertex> bends = detours.Around(a, b);
+    const Point a{12.3456 + .0012345 * i, 10};
+    const Point b{28.7654, 27.1234 + .0009876 * i};
+    const std::vector<Point> bends = detours.Around(a, b);
     found += bends.empty() ? 0 : 1;
-    for (const Vertex bend : bends) {
+    for (const Point bend : bends) {
       EXPECT_NEAR(bend.x * 1000, std::round(bend.x * 1000), 1e-6) << i;
       EXPECT_NEAR(bend.y * 1000, std::round(bend.y * 1000), 1e-6) << i;
     }
@@ -100,10 +100,10 @@ TEST(Detours, StraightTravelsStayStraight) {
 
 TEST(Detours, LeadAroundAHoleTheShorterTravel) {
   const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
-  const Vertex a{5, 22};
-  const Vertex b{35, 22};
+  const Point a{5, 22};
+  const Point b{35, 22};
 
-  const std::vector<Vertex> bends = Detours(walls).Around(a, b);
+  const std::vector<Point> bends = Detours(walls).Around(a, b);
 
   ASSERT_THAT(bends, Not(IsEmpty()));
   EXPECT_TRUE(CrossesNone(walls, a, bends, b));
@@ -120,10 +120,10 @@ TEST(Detours, LeadFromAWallAlongItsInside) {
   // A horseshoe; the travel from its one leg's tip, which lies on the wall, into the other leg.
   const VisibleWalls walls(
       {Wall({{0, 0}, {40, 0}, {40, 30}, {30, 30}, {30, 10}, {10, 10}, {10, 30}, {0, 30}, {0, 0}})});
-  const Vertex on_wall{10, 25};
-  const Vertex inside{35, 25};
+  const Point on_wall{10, 25};
+  const Point inside{35, 25};
 
-  const std::vector<Vertex> bends = Detours(walls).Around(on_wall, inside);
+  const std::vector<Point> bends = Detours(walls).Around(on_wall, inside);
 
   ASSERT_THAT(bends, Not(IsEmpty()));
   EXPECT_TRUE(CrossesNone(walls, on_wall, bends, inside));
@@ -137,9 +137,9 @@ TEST(Detours, CrossNothingAmongRandomRoundHoles) {
     Rng rng(seed);
     std::vector<Outline> outlines = {Square(0, 0, 100)};
     for (int i = 0; i < 25; ++i) {
-      const Vertex center{10.0 + 20 * (i % 5), 10.0 + 20 * (i / 5)};
+      const Point center{10.0 + 20 * (i % 5), 10.0 + 20 * (i / 5)};
       const double radius = 2 + 6.5 * rng.Unit();
-      std::vector<Vertex> points;
+      std::vector<Point> points;
       for (int k = 0; k <= 24; ++k) {
         const double angle = 2 * std::numbers::pi * (k % 24) / 24;
         points.push_back(
@@ -149,13 +149,13 @@ TEST(Detours, CrossNothingAmongRandomRoundHoles) {
     }
     const VisibleWalls walls(outlines);
     // Where the holes leave streets free.
-    const Vertex a{20.0 * rng.Below(6), 3 + 94 * rng.Unit()};
-    const Vertex b{3 + 94 * rng.Unit(), 20.0 * rng.Below(6)};
-    const Vertex from{std::clamp(a.x, 1.0, 99.0), a.y};
-    const Vertex to{b.x, std::clamp(b.y, 1.0, 99.0)};
+    const Point a{20.0 * rng.Below(6), 3 + 94 * rng.Unit()};
+    const Point b{3 + 94 * rng.Unit(), 20.0 * rng.Below(6)};
+    const Point from{std::clamp(a.x, 1.0, 99.0), a.y};
+    const Point to{b.x, std::clamp(b.y, 1.0, 99.0)};
     if (!walls.Crossed(from, to)) continue;
     ++wanted;
-    const std::vector<Vertex> bends = Detours(walls).Around(from, to);
+    const std::vector<Point> bends = Detours(walls).Around(from, to);
     if (bends.empty()) continue;
     ++found;
     EXPECT_TRUE(CrossesNone(walls, from, bends, to)) << "seed " << seed;

@@ -72,7 +72,7 @@ TEST(HeadRoom, WhatIsFinishedStandsInTheTravelOfWhatIsLower) {
   ASSERT_NE(beside, nullptr);
   EXPECT_EQ(room.Of(21), beside);
 
-  const auto clear = [&](Vertex a, Vertex b, double z) { return beside->IsClear(a, z, b, z); };
+  const auto clear = [&](Point a, Point b, double z) { return beside->IsClear(a, z, b, z); };
   // Through it, above it, and where the file leads.
   EXPECT_FALSE(clear({10, 23}, {36, 23}, .2));
   EXPECT_FALSE(clear({10, 23}, {36, 23}, 3.8));

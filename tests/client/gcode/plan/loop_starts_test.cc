@@ -13,8 +13,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::vector<Vertex> Circle(size_t vertices) {
-  std::vector<Vertex> loop;
+std::vector<Point> Circle(size_t vertices) {
+  std::vector<Point> loop;
   for (size_t k = 0; k < vertices; ++k) {
     const double turn =
         2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(vertices);
@@ -36,7 +36,7 @@ TEST(LoopStarts, AFewStayAsTheyAre) {
 
 TEST(LoopStarts, ManyAreThinnedEvenlyAlongTheLoop) {
   for (const size_t vertices : {kMostStarts + 1, size_t{1000}, size_t{20'000}}) {
-    const std::vector<Vertex> loop = Circle(vertices);
+    const std::vector<Point> loop = Circle(vertices);
     const std::vector<uint32_t> kept = ThinnedStarts(loop, {});
     EXPECT_EQ(kept.front(), 0);
     EXPECT_LE(kept.size(), kMostStarts + 1);
@@ -52,13 +52,13 @@ TEST(LoopStarts, ManyAreThinnedEvenlyAlongTheLoop) {
 
 // What counts is the length between them, not their number.
 TEST(LoopStarts, LongSidesKeepTheirEnds) {
-  std::vector<Vertex> loop = {{0, 0}, {100, 0}, {100, 100}, {0, 100}};
+  std::vector<Point> loop = {{0, 0}, {100, 0}, {100, 100}, {0, 100}};
   for (int k = 1; k < 1000; ++k) loop.push_back({0, 100 - 0.001 * k});
   EXPECT_THAT(ThinnedStarts(loop, {}), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(LoopStarts, OneOfManyAtOnePointStays) {
-  const std::vector<Vertex> loop(1000, Vertex{3, 4});
+  const std::vector<Point> loop(1000, Point{3, 4});
   EXPECT_THAT(ThinnedStarts(loop, {}), SizeIs(1));
 }
 

@@ -105,7 +105,7 @@ TEST(Policy, BalancedStartsVisibleWallsAtTheirCorners) {
 
 // So that a search does not take minutes for loops of thousands of vertices.
 TEST(Policy, LoopsOfVeryManyVerticesMayBeginAtAFewHundred) {
-  std::vector<Vertex> circle;
+  std::vector<Point> circle;
   for (int k = 0; k <= 5000; ++k) {
     const double turn = 2 * std::numbers::pi * (k % 5000) / 5000;
     circle.push_back({50 + 20 * std::cos(turn), 50 + 20 * std::sin(turn)});

@@ -30,7 +30,7 @@ class Sheet {
   Sheet& Square(const std::string& type, double x, double y, double side) {
     return Path(type, {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}, {x, y}});
   }
-  Sheet& Path(const std::string& type, const std::vector<Vertex>& points) {
+  Sheet& Path(const std::string& type, const std::vector<Point>& points) {
     Move("G0", points[0], "");
     text_ += type + "\n";
     for (size_t i = 1; i < points.size(); ++i) Move("G1", points[i], " E.1");
@@ -54,7 +54,7 @@ class Sheet {
   }
 
  private:
-  void Move(const std::string& command, Vertex to, const std::string& rest) {
+  void Move(const std::string& command, Point to, const std::string& rest) {
     text_ += command + " X" + std::to_string(to.x) + " Y" + std::to_string(to.y) + rest + "\n";
   }
 

@@ -49,11 +49,11 @@ struct Rules {
         walls(outlines) {
     habit.spares_walls = spares_walls;
   }
-  bool Retracts(Vertex a, Vertex b) const {
+  bool Retracts(Point a, Point b) const {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
         .Retracts(a, b, Feature::kSparseInfill);
   }
-  PlannedTravel TravelOf(Vertex a, Vertex b) const {
+  PlannedTravel TravelOf(Point a, Point b) const {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
         .TravelOf(a, b, Feature::kSparseInfill);
   }

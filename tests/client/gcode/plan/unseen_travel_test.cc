@@ -29,7 +29,7 @@ class UnseenTravel : public ::testing::Test {
     return sketch.Read();
   }
 
-  static bool Retracts(const GcodeFile& file, Feature feature, Vertex to) {
+  static bool Retracts(const GcodeFile& file, Feature feature, Point to) {
     const RetractionHabit habit = HabitOfNewTravels(file);
     EXPECT_TRUE(habit.crossing_matters);
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[0]);
