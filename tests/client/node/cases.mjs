@@ -5,6 +5,7 @@ import { execFile, spawn } from "node:child_process";
 import { cp, readFile, writeFile } from "node:fs/promises";
 import { connect as connectTo, createServer } from "node:net";
 import { test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
 import { promisify } from "node:util";
 import grpc from "@grpc/grpc-js";
 import loader from "@grpc/proto-loader";
@@ -152,7 +153,14 @@ async function program(t, variable, ...flags) {
   const address = `127.0.0.1:${await freePort()}`, operators = `127.0.0.1:${await freePort()}`;
   const process_ = spawn(process.env[variable], [`--listen=${address}`, `--metrics_listen=${operators}`, ...flags], { stdio: "ignore" });
   t.after(() => process_.kill("SIGKILL"));
-  const metrics = async () => (await fetch(`http://${operators}/metrics`)).text();
+  const ended = () => process_.exitCode ?? process_.signalCode;
+  const metrics = async () => {  // of several programs some may be up before others
+    for (;;) {
+      const told = await fetch(`http://${operators}/metrics`).catch((error) => { if (ended() !== null) throw error; });
+      if (told) return told.text();
+      await sleep(20);
+    }
+  };
   return { address, metrics, kill: () => process_.kill("SIGKILL") };
 }
 
