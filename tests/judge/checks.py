@@ -12,6 +12,8 @@ CELL_MM = 0.5  # of the maps of heights and of what covers what
 FINE_CELL_MM = 0.2  # lines of ironing lie closer than those of skin
 ISLAND_CELLS_MM = (0.5, 0.7)  # islands in cells that touch count as one: from 0.5 mm apart on, never beyond 2 mm
 HALF_WALL_MM = 0.2
+END_ON_WALL_MM = 0.02
+CROSSING_MM = 1e-9
 MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02
 REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no rest at all
@@ -109,9 +111,9 @@ def filament(before, after, options):
     """Nothing is printed while filament is pulled back, and as much is pushed in the whole as before."""
 
     def starved(side):
-        return sum(1 for move in side.deposits() if move.retracted > 0.02)
+        return sum(move.e for move in side.deposits() if move.retracted > 0.02)
 
-    if starved(after) > starved(before):
+    if starved(after) > starved(before) + 0.02:
         worst = next(move for move in after.deposits() if move.retracted > 0.02)
         yield f"filament: line {worst.line} prints with {min(worst.retracted, 99):.3f} mm pulled back"
     pushed = [sum(move.e for move in side.moves) for side in (before, after)]
@@ -257,13 +259,20 @@ def distance(a, b):
 
 
 def meets(move, walls):
-    """True if the move without its ends lies upon one of `walls`: {cell: moves}."""
+    """True if the move without its ends lies upon one of `walls`: {cell: moves}. It may leave a wall, or come to
+    one, at a small angle."""
     x, y = (move.x1 - move.x0) / move.length, (move.y1 - move.y0) / move.length
     middle = ((move.x0 + MOVE_END_MM * x, move.y0 + MOVE_END_MM * y),
               (move.x1 - MOVE_END_MM * x, move.y1 - MOVE_END_MM * y))
     near = {id(wall): wall for cx, cy in cells_of(move, CELL_MM) for i in (-1, 0, 1) for j in (-1, 0, 1)
             for wall in walls.get((cx + i, cy + j), ())}
-    return any(distance(middle, ((wall.x0, wall.y0), (wall.x1, wall.y1))) < HALF_WALL_MM for wall in near.values())
+
+    def reach(wall):
+        near, far = sorted(distance((end, end), wall) for end in ((move.x0, move.y0), (move.x1, move.y1)))
+        return CROSSING_MM if near < END_ON_WALL_MM and far > HALF_WALL_MM else HALF_WALL_MM
+
+    return any(distance(middle, wall) < reach(wall)
+               for wall in (((wall.x0, wall.y0), (wall.x1, wall.y1)) for wall in near.values()))
 
 
 def walls_and_tops(side):

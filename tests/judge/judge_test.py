@@ -59,6 +59,13 @@ class Checks(unittest.TestCase):
 
         self.assertIn("filament", faults(self.towers, after))
 
+    def test_what_a_tool_lacks_behind_its_change_may_be_pushed_along_other_paths(self):
+        purge = ["G1 E-1 F2100"]
+        before = HEAD + layer(0.2, purge, block(10, 0.2, e=0.6), block(40, 0.2))
+        after = HEAD + layer(0.2, purge, block(40, 0.2), block(10, 0.2, e=0.6))
+
+        self.assertNotIn("filament", faults(before, after))
+
     def test_less_rest_is_found_where_the_policy_keeps_it(self):
         after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
 
@@ -172,6 +179,13 @@ class Checks(unittest.TestCase):
         for beside, found in ((0.3, False), (0.1, True)):
             along = [f"G1 X45 Y{10 + beside} F9000", f"G1 X48 Y{10 + beside}", f"G1 X41.5 Y{10 + beside}"]
             self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, along)), found)
+
+    def test_open_travel_may_leave_its_wall_at_a_small_angle(self):
+        walls = [";TYPE:External perimeter"] + block(10, 0.2)
+        before = HEAD + layer(0.2, walls)
+
+        for to, found in (("X20 Y11.5", False), ("X20 Y10.1", True), ("X5 Y15", False), ("X25 Y11.5", True)):
+            self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, [f"G1 {to} F9000"])), found, to)
 
     def test_open_travel_over_a_surface_is_found_and_over_supports_is_not(self):
         for feature, found in (("Top solid infill", True), ("Support material", False)):
