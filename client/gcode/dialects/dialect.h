@@ -50,7 +50,7 @@ struct Head {
 struct FeatureWord {
   std::string_view word;
   Feature feature;
-  bool or_ironing = false;  // which has no word of its own
+  bool or_ironing = false;  // has the same word
 };
 
 // What settings say that are stated in the file, in the units of MachineProfile.
@@ -121,13 +121,13 @@ std::string_view TypeIn(std::string_view line);
 // The feature of that name, with blanks around it or not; kCount if nobody calls one so.
 Feature FeatureOfType(std::string_view type);
 
-// Ironing may have that name, too.
+// True if the slicer calls ironing by that name, too.
 bool MayBeIroning(std::string_view type);
 
 // The feature that the comment on a move names; kCount if it names none.
 Feature FeatureOfMove(std::string_view comment);
 
-// In which configurations `key` says something; nothing if in none.
+// What the setting `key` says; nothing if no slicer known here has it.
 std::optional<Setting> SettingOf(std::string_view key);
 
 // The time that `comment` states, if it does; `comment` begins behind its semicolon and blanks.
