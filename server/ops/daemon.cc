@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "server/ops/memory.h"
+
 namespace traverse {
 namespace {
 
@@ -28,6 +30,7 @@ Daemon::Daemon(std::string name, int also_ends) : name_(std::move(name)), also_e
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   signal(SIGPIPE, SIG_IGN);
   RaiseFileLimit();
+  GiveLargeBlocksBack();
 }
 
 int Daemon::Fail(const absl::Status& status) const {

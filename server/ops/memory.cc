@@ -1,5 +1,6 @@
 #include "server/ops/memory.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -62,6 +63,11 @@ int64_t ResidentBytes() {
   int64_t all = 0, resident = 0, shared = 0;
   if (!(file >> all >> resident >> shared)) return 0;
   return (resident - shared) * sysconf(_SC_PAGESIZE);
+}
+
+void GiveLargeBlocksBack() {
+  constexpr int kLargeBytes = 4 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargeBytes);  // which also stops it from being adjusted
 }
 
 }  // namespace traverse

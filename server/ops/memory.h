@@ -15,6 +15,11 @@ int64_t MemoryLimit(const std::string& root = "");
 // Memory that only this process uses, in bytes; 0 if unknown. Takes some microseconds.
 int64_t ResidentBytes();
 
+// From now on blocks of 4 MiB or more go back to the system as soon as they are freed. By itself
+// the allocator keeps those of up to 32 MiB once it has seen one, for each of its arenas, and
+// nobody counts them. For programs that go on running; before the first thread begins.
+void GiveLargeBlocksBack();
+
 }  // namespace traverse
 
 #endif  // TRAVERSE_SERVER_OPS_MEMORY_H_

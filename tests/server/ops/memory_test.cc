@@ -1,9 +1,11 @@
 #include "server/ops/memory.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "tests/support/scratch_folder.h"
@@ -55,6 +57,21 @@ TEST(ResidentBytes, GrowWithWhatIsUsed) {
   const int64_t before = ResidentBytes();
   const std::string used(50 << 20, 'x');
   EXPECT_GT(ResidentBytes() - before, 40 << 20) << used.size();
+}
+
+TEST(GiveLargeBlocksBack, HoldsForThoseAfterTheFirst) {
+  if (mallinfo2().arena == 0) GTEST_SKIP() << "not glibc's allocator";
+  const auto mapped_for = [](size_t bytes) {
+    const size_t before = mallinfo2().hblkhd;
+    const auto block = std::make_unique<char[]>(bytes);
+    return mallinfo2().hblkhd - before;
+  };
+  GiveLargeBlocksBack();
+
+  for (const size_t bytes : {size_t{30} << 20, size_t{12} << 20, size_t{5} << 20}) {
+    EXPECT_GE(mapped_for(bytes), bytes);
+  }
+  EXPECT_EQ(mapped_for(1 << 20), 0u);
 }
 
 }  // namespace
