@@ -6,6 +6,7 @@ import http.client
 import json
 import os
 import re
+import signal
 import subprocess
 import tempfile
 
@@ -60,6 +61,11 @@ class Gateway:
              f"--threads={threads}", *flags], stdout=subprocess.PIPE, text=True)
         ports = [self.process.stdout.readline().split()[-1] for _ in range(3)]
         self.http_port, self.grpc_port, self.metrics_port = (int(port) for port in ports)
+
+    def stop(self):
+        """Until SIGCONT it does nothing: the signal alone takes effect some time later."""
+        self.process.send_signal(signal.SIGSTOP)
+        os.waitid(os.P_PID, self.process.pid, os.WSTOPPED)
 
     def close(self):
         self.process.kill()

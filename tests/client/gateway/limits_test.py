@@ -272,7 +272,7 @@ class Time(unittest.TestCase):
     def test_addresses_take_turns_with_new_connections(self):
         gateway = Gateway("--max_requests=2")
         self.addCleanup(gateway.close)
-        gateway.process.send_signal(signal.SIGSTOP)  # so that all have come when it looks
+        gateway.stop()  # so that all have come when it looks
         many = [socket.create_connection(("127.0.0.1", gateway.http_port), source_address=("127.0.0.2", 0)) for _ in range(50)]
         for connection in many:
             self.addCleanup(connection.close)
@@ -286,7 +286,7 @@ class Time(unittest.TestCase):
     def test_connections_that_wait_for_their_turn_give_way(self):
         gateway = Gateway("--max_connections=20", "--max_connections_per_address=15")
         self.addCleanup(gateway.close)
-        gateway.process.send_signal(signal.SIGSTOP)
+        gateway.stop()
         for i in range(90):
             many = socket.create_connection(("127.0.0.1", gateway.http_port), source_address=(f"127.0.0.{3 + i % 3}", 0))
             self.addCleanup(many.close)
