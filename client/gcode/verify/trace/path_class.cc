@@ -65,6 +65,8 @@ constexpr Name kNames[] = {
     {"outer perimeter", PathClass::kOuterWall},
     {"inner perimeter", PathClass::kInnerWall},
     {"single extrusion", PathClass::kInfill},
+    {"external single extrusion", PathClass::kOuterWall},
+    {"internal single extrusion", PathClass::kInfill},
     {"solid layer", PathClass::kSkin},
     {"dense support", PathClass::kInterface},
     {"prime pillar", PathClass::kTower},
@@ -95,6 +97,8 @@ constexpr Name kNames[] = {
 constexpr std::string_view kBareNames[] = {"outer perimeter",
                                            "inner perimeter",
                                            "single extrusion",
+                                           "external single extrusion",
+                                           "internal single extrusion",
                                            "solid layer",
                                            "gap fill",
                                            "infill",
@@ -102,6 +106,8 @@ constexpr std::string_view kBareNames[] = {"outer perimeter",
                                            "dense support",
                                            "bridge",
                                            "skirt",
+                                           "brim",
+                                           "ironing",
                                            "prime pillar",
                                            "ooze shield",
                                            "raft",
@@ -155,7 +161,6 @@ std::optional<PathClass> ClassOfComment(std::string_view comment) {
     }
     return Find(name);
   }
-  if (comment.size() > 20) return std::nullopt;
   for (const std::string_view name : kBareNames) {
     if (comment == name) return Find(name);
   }
