@@ -5,6 +5,7 @@
 #include <iterator>
 #include <vector>
 
+#include "client/gcode/text/decimal.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -22,7 +23,7 @@ bool Ends(std::string_view begins, std::string_view rest) {
 bool Is(const Mark& mark, std::string_view line) {
   if (!StartsWith(line, mark.begins)) return false;
   const std::string_view rest = line.substr(mark.begins.size());
-  if (mark.numbered && (rest.empty() || rest[0] < '0' || rest[0] > '9')) return false;
+  if (mark.numbered && (rest.empty() || !IsDigit(rest[0]))) return false;
   return Ends(mark.begins, rest);
 }
 
@@ -51,8 +52,9 @@ const FeatureWord* Find(std::span<const FeatureWord> features, std::string_view 
 // In the first table that has it; null if none has.
 const FeatureWord* FindInAll(std::span<const FeatureWord> Dialect::*features,
                              std::string_view word) {
+  word = TrimBlanks(word);
   for (const Dialect* dialect : kAll) {
-    if (const FeatureWord* known = Find(dialect->*features, TrimBlanks(word))) return known;
+    if (const FeatureWord* known = Find(dialect->*features, word)) return known;
   }
   return nullptr;
 }
@@ -97,6 +99,8 @@ std::string NameIn(std::string_view line) {
 }
 
 }  // namespace
+
+std::span<const Dialect* const> AllDialects() { return kAll; }
 
 const Mark* MarkOf(std::string_view line) {
   static const MarkIndex& index = *new MarkIndex(IndexMarks());

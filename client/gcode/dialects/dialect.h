@@ -110,6 +110,9 @@ extern const Dialect kKisslicer;
 extern const Dialect kOthers;    // IceSL, Kiri:Moto, Canvas
 extern const Dialect kFirmware;  // Klipper, Bambu's printers
 
+// All of these, in the order in which a file is asked who wrote it.
+std::span<const Dialect* const> AllDialects();
+
 // The mark that `line` is, of which it begins with most; null if it is none. `line` has no blanks
 // around it.
 const Mark* MarkOf(std::string_view line);

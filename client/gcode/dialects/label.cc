@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "client/gcode/dialects/dialect.h"
+#include "client/gcode/text/decimal.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -37,7 +38,7 @@ Label HostLabel(std::string_view line) {
 Label MarlinLabel(std::string_view line) {
   constexpr std::string_view kM486 = "M486";
   const std::string_view rest = line.substr(kM486.size());
-  if (!rest.empty() && std::isdigit(static_cast<unsigned char>(rest[0])) != 0) return {};
+  if (!rest.empty() && IsDigit(rest[0])) return {};
   const std::string_view words = TrimBlanks(rest);
   if (!StartsWith(words, "S")) return {LabelKind::kSays, kM486, false};
   const bool ends = StartsWith(TrimBlanks(words.substr(1)), "-");

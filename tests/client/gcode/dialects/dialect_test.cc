@@ -4,17 +4,19 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "client/gcode/machine/print_state.h"
+#include "client/gcode/plan/policy.h"
+#include "client/gcode/read/reader.h"
+#include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/support/random_order.h"
 
 namespace traverse::gcode {
 namespace {
 
-const Dialect* const kDialects[] = {&kPrusa,      &kOrca,      &kSlic3r,   &kCura,  &kIdeaMaker,
-                                    &kSimplify3d, &kKisslicer, &kFirmware, &kOthers};
-
 // Tables may share words; then these mean the same.
 TEST(Dialects, AgreeOnWhatTheirWordsMean) {
-  for (const Dialect* dialect : kDialects) {
+  for (const Dialect* dialect : AllDialects()) {
     for (const FeatureWord& known : dialect->features) {
       EXPECT_EQ(FeatureOfType(known.word), known.feature) << known.word;
     }
@@ -61,6 +63,29 @@ TEST(Dialects, FeaturesOfSimplify3dNeedNoMark) {
     }
   }
   EXPECT_EQ(CommentSlots("; WALL-OUTER"), 0u);
+}
+
+// The verifier has words of its own for what the reader knows.
+TEST(Dialects, FeaturesWithoutMarksMayChangePlaces) {
+  for (const FeatureWord& known : kSimplify3d.features) {
+    std::string text = "M83\n; layer 1, Z = 0.2\nG1 Z0.2 F6000\n";
+    for (const std::string& word :
+         {std::string("solid layer"), std::string(known.word), std::string("infill")}) {
+      text += "; " + word + "\n";
+      for (int i = 0; i < 6; ++i) {
+        const int x = static_cast<int>(text.size()) % 97 * 2;
+        text += absl::StrCat("G1 X", x, " Y", 10 * i, " F9000\nG1 X", x, " Y", 10 * i + 5,
+                             " E0.2 F1800\n");
+      }
+    }
+    const auto file = ReadGcode(text, "part");
+    ASSERT_TRUE(file.ok()) << file.status();
+    for (uint64_t seed = 1; seed <= 5; ++seed) {
+      const std::string shuffled = testing::Shuffled(**file, Policy::kFree, seed);
+      EXPECT_EQ(VerifyGcode(text, "original", shuffled, "shuffled", OnlySamePrint()).message(), "")
+          << known.word;
+    }
+  }
 }
 
 TEST(Dialects, TravelOfKisslicerIsNoFeature) {
