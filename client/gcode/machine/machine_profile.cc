@@ -172,8 +172,10 @@ void Dynamics::Follow(std::string_view line) {
     SetPositive(travel_accel_, value('T'));
   } else if (command.number == 201) {
     SetPositive(max_accel_, value('X'));
-  } else if (command.number == 205) {
+  } else if (command.number == 205 || command.number == 207) {
     SetPositive(corner_speed_, value('X'));
+  } else if (command.number == 566 && command.Has('X')) {
+    SetPositive(corner_speed_, *value('X') / 60);
   }
 }
 

@@ -42,6 +42,13 @@ SlotMask OnlyWord(Command& command, char letter, Slot slot) {
   return SlotBit(slot);
 }
 
+// Repetier's, as CuraEngine writes it; elsewhere M207 says how G10 retracts, by S and F.
+SlotMask RepetierJerkSlots(Command& command) {
+  const SlotMask slots = SlotsOfWords(
+      command, {{'X', SlotBit(kSlotJerkX) | SlotBit(kSlotJerkY)}, {'Z', SlotBit(kSlotJerkZ)}});
+  return (slots & SlotBit(kSlotJerkX)) != 0 ? slots : 0;
+}
+
 }  // namespace
 
 SlotMask CommentSlots(std::string_view comment) {
@@ -92,12 +99,23 @@ SlotMask CommandSlots(Command& command) {
                                     {'Z', SlotBit(kSlotJerkZ)},
                                     {'E', SlotBit(kSlotJerkE)},
                                     {'J', SlotBit(kSlotJunction)}});
+    case 207:
+      return RepetierJerkSlots(command);
+    case 215:  // Cheetah's
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)}, {'Y', SlotBit(kSlotJerkY)}});
     case 221:
       return OnlyWord(command, 'S', kSlotFlow);
+    case 233:  // Repetier's
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotPressure)}, {'Y', SlotBit(kSlotPressure)}});
+    case 566:  // RepRapFirmware's
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)},
+                                    {'Y', SlotBit(kSlotJerkY)},
+                                    {'Z', SlotBit(kSlotJerkZ)},
+                                    {'E', SlotBit(kSlotJerkE)}});
     case 572:
       return SlotsOfWords(command, {{'S', SlotBit(kSlotPressure)}, {'D', 0}});
-    case 900:
-      return OnlyWord(command, 'K', kSlotPressure);
+    case 900:  // L and M: Bambu Lab's; T: a tool
+      return SlotsOfWords(command, {{'K', SlotBit(kSlotPressure)}, {'L', 0}, {'M', 0}, {'T', 0}});
     default:
       return 0;
   }

@@ -32,8 +32,8 @@ enum Slot : uint8_t {
   kSlotPrintAccel,     // M204 P, S
   kSlotTravelAccel,    // M204 T, S
   kSlotRetractAccel,   // M204 R
-  kSlotJerkX,          // M205 X
-  kSlotJerkY,          // M205 Y
+  kSlotJerkX,          // M205 X, M566 X, M207 X, M215 X
+  kSlotJerkY,          // M205 Y, M566 Y, M207 X, M215 Y
   kSlotMaxAccelX,      // M201 X
   kSlotMaxAccelY,      // M201 Y
   kSlotMaxTravelX,     // M202 X, of Repetier
@@ -44,14 +44,14 @@ enum Slot : uint8_t {
   kSlotMaxSpeedY,      // M203 Y
   kSlotMaxSpeedZ,      // M203 Z
   kSlotMaxSpeedE,      // M203 E
-  kSlotJerkZ,          // M205 Z
-  kSlotJerkE,          // M205 E
+  kSlotJerkZ,          // M205 Z, M566 Z, M207 Z
+  kSlotJerkE,          // M205 E, M566 E
   kSlotJunction,       // M205 J
   kSlotKlipperAccel,   // SET_VELOCITY_LIMIT ACCEL
   kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL, MINIMUM_CRUISE_RATIO
   kSlotKlipperCorner,  // SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY
   kSlotKlipperSpeed,   // SET_VELOCITY_LIMIT VELOCITY
-  kSlotPressure,       // M900, M572, SET_PRESSURE_ADVANCE
+  kSlotPressure,       // M900, M572, M233, SET_PRESSURE_ADVANCE
   kSlotFlow,           // M221
   kSlotCount,
 };

@@ -15,6 +15,10 @@ uint64_t ValueOf(std::string_view comment) {
   return DigestOf(TrimLine(comment.substr(comment.find(':') + 1)));
 }
 
+uint64_t WordOr0(const CommandWords& words, char letter) {
+  return static_cast<uint64_t>(words.ValueOr(letter, 0));
+}
+
 }  // namespace
 
 void PrintSettings::Set(size_t slot, uint64_t value) {
@@ -84,12 +88,20 @@ bool PrintSettings::SetByM(int number, const CommandWords& words) {
     SetWord(words, 'R', kAccelRetract);
     return true;
   }
-  if (number == 205 && words.OnlyFrom("XYZEJ")) {
+  if ((number == 205 && words.OnlyFrom("XYZEJ")) || (number == 566 && words.OnlyFrom("XYZE")) ||
+      (number == 215 && words.OnlyFrom("XY"))) {
     SetWord(words, 'X', kJerkX);
     SetWord(words, 'Y', kJerkY);
     SetWord(words, 'Z', kLimits + 6);
     SetWord(words, 'E', kLimits + 7);
     SetWord(words, 'J', kLimits + 8);
+    return true;
+  }
+  if (number == 207 && words.Has('X') && words.OnlyFrom("XZ")) {
+    // Repetier's jerk in the plane; with other words how other machines retract at G10.
+    SetWord(words, 'X', kJerkX);
+    SetWord(words, 'X', kJerkY);
+    SetWord(words, 'Z', kLimits + 6);
     return true;
   }
   if (number == 201 && words.OnlyFrom("XYZE")) {
@@ -113,8 +125,12 @@ bool PrintSettings::SetByM(int number, const CommandWords& words) {
   }
   if (number == 221 && words.OnlyFrom("S")) {
     SetWord(words, 'S', kFlow);
-  } else if (number == 900 && words.OnlyFrom("K")) {
-    SetWord(words, 'K', kPressure);
+  } else if (number == 900 && words.Has('K') && words.OnlyFrom("KLMT")) {
+    // Bambu Lab's L and M belong to what K says.
+    Set(kPressure, Mix(Mix(static_cast<uint64_t>(words['K']), WordOr0(words, 'L')),
+                       Mix(WordOr0(words, 'M'), WordOr0(words, 'T'))));
+  } else if (number == 233 && words.OnlyFrom("XY")) {
+    Set(kPressure, Mix(WordOr0(words, 'X'), WordOr0(words, 'Y')));
   } else if (number == 572 && words.OnlyFrom("SD") && words.Has('S')) {
     SetWord(words, 'S', kPressure);
   } else {

@@ -62,6 +62,13 @@ TEST(PathSettings, GoWithTheirPath) {
       {"SET_PRESSURE_ADVANCE ADVANCE=0.03\n", "SET_PRESSURE_ADVANCE ADVANCE=0.05\n"},
       {"M900 K0.03\n", "M900 K0.05\n"},
       {"M572 D0 S0.03\n", "M572 D0 S0.05\n"},
+      {"M900 K0.03 L1000 M10 ; Override pressure advance value\n",
+       "M900 K0.05 L1000 M10 ; Override pressure advance value\n"},  // for printers of Bambu Lab
+      {"M900 T0 K0.03\n", "M900 T0 K0.05\n"},
+      {"M233 X0.03 Y0.03\n", "M233 X0.05 Y0.05\n"},  // Repetier
+      {"M207 X20\n", "M207 X10\n"},                  // CuraEngine's jerk for Repetier
+      {"M566 X300 Y300\n", "M566 X600 Y600\n"},      // for RepRapFirmware
+      {"M215 X8000 Y8000\n", "M215 X9000 Y9000\n"},  // for Cheetah
       {"M221 S95\n", "M221 S100\n"},
       {"M203 X100 Y100\n", "M203 X200 Y200\n"},
       {"M203 X100 Y100 Z10 E50\n", "M203 X200 Y200 Z10 E60\n"},
@@ -82,6 +89,13 @@ TEST(PathSettings, GoWithTheirPath) {
     ASSERT_NE(at, std::string::npos);
     other.replace(at, settings[1].size(), settings[0]);
     EXPECT_FALSE(VerifyGcode(text, "a", other, "b", {}).ok()) << settings[0];
+  }
+}
+
+// One that firmware retracts by, and one that sets nothing, hold what stands beside them.
+TEST(PathSettings, WithOtherWordsTheyAreOtherCommands) {
+  for (const char* line : {"M207 S0.8 F2100\n", "M207 Z0.4\n", "M900 L0.5\n", "M566 P1\n"}) {
+    EXPECT_EQ(Up(Lines({line, line})).layers_changed, 0) << line;
   }
 }
 
