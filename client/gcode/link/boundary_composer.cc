@@ -87,7 +87,8 @@ void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
     case StepKind::kLift:
       // A departure of another link may have lifted the head higher.
       if (link.Leaves(i) && step.to.z >= step.from.z && link_.at().z > step.to.z) return;
-      return LiftAs(step, step.to.z);
+      // Behind the travel, the path of the file may begin lower than this one, as scarf seams do.
+      return LiftAs(step, link.Leaves(i) ? step.to.z : to_.first().z + (step.to.z - link.z_behind));
     case StepKind::kSlot:
       // What another path is printed under is set at its beginning, once.
       if ((step.slots & kDynamicsSlots) != 0 &&

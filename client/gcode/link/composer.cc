@@ -109,7 +109,9 @@ void LinkComposer::ComposePlain() {
   const Link left = Depart(like);
   const Link rise = Stretched(left.lift > like.lift ? left : like,
                               LengthXy(link_.at(), to_.first()), donors_.highest_lift());
-  TravelAs(like, to_.first().z + rise.lift, rise);
+  // A scarf seam begins lower than its layer.
+  const Decimal height = std::max(to_.first().z, to_.last().z);
+  TravelAs(like, height + rise.lift, rise);
   Arrive(like);
   if (!IsBoundary(to_.block())) AddComments();
   Settle(like);

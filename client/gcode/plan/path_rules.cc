@@ -82,7 +82,7 @@ bool PathRules::OrderIsQuality(Feature feature) const {
 bool PathRules::MayBeginAnywhere(size_t path) const {
   constexpr uint16_t kFixing =
       kBlockTail | kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
-  if ((BlockOf(path).flags & kFixing) != 0) return false;
+  if ((BlockOf(path).flags & kFixing) != 0 || Rises(path)) return false;
   if (policy_ != Policy::kSafe) return true;
   const Feature feature = FeatureOf(path);
   return feature != Feature::kOuterWall && feature != Feature::kLoop &&
@@ -94,9 +94,12 @@ bool PathRules::MayTurnRound(size_t path) const {
       kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
   const Feature feature = FeatureOf(path);
   if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
-  if (HasFullCircle(path)) return false;
+  if (HasFullCircle(path) || Rises(path)) return false;
   return IsFree(policy_) || !IsWall(feature);
 }
+
+// A scarf seam rises from its start to the height of the layer.
+bool PathRules::Rises(size_t path) const { return BlockOf(path).first.z != BlockOf(path).last.z; }
 
 // Its direction is all that says which way round such an arc goes, as both its ends are one point.
 bool PathRules::HasFullCircle(size_t path) const {

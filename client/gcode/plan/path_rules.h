@@ -42,6 +42,7 @@ class PathRules {
   bool MayTurnRound(size_t path) const;
   bool OrderIsQuality(Feature feature) const;
   bool HasFullCircle(size_t path) const;
+  bool Rises(size_t path) const;
 
   const GcodeFile& file_;
   const size_t first_block_;

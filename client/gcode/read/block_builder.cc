@@ -251,6 +251,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
   // Such a path needs no more travel than its tail.
   meets_tail_ = to_tail && link_.xy_moves == 0;
   has_tail_ = false;
+  EndBlock();
   Block block;
   block.begin = step.line.begin;
   block.state_in = CurrentState();
@@ -349,11 +350,14 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   block.flags |= pending_;
   pending_ = 0;
   link_ = OpenLink{};
-  if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
   // A layer that begins with a scarf seam is as high as that ends.
   Layer& layer = file_.layers.back();
   const bool begins_layer = layer.first_block + 1 == file_.blocks.size();
-  if (begins_layer && after.at.z > before.at.z) layer.z = std::max(layer.z, after.at.z);
+  ends_rising_ = after.at.z > before.at.z;
+  if (begins_layer && ends_rising_) layer.z = std::max(layer.z, after.at.z);
+  if (step.retracted || after.at.z < before.at.z || (ends_rising_ && !IsScarf(block, layer))) {
+    block.flags |= kBlockPinned;
+  }
   if (step.arc)
     block.flags |= EndsOnItsCircle(step.command, step.from, after.at, after.UnitMm())
                        ? kBlockArcs
@@ -363,6 +367,19 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   file_.ends.push_back(after.InMm(after.at));
   ++block.end_count;
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
+}
+
+// It begins no lower than what lies below, and rises no higher than its layer.
+bool BlockBuilder::IsScarf(const Block& block, const Layer& layer) const {
+  const size_t count = file_.layers.size();
+  const Decimal below = count > 1 ? file_.layers[count - 2].z : 0;
+  return block.first.z >= below && block.last.z <= layer.z;
+}
+
+// What rises up to its end is no scarf seam, but a spiral vase, or a path in the air.
+void BlockBuilder::EndBlock() {
+  if (ends_rising_) Last().flags |= kBlockPinned;
+  ends_rising_ = false;
 }
 
 // CuraEngine ends lines with a short move at print speed, and coasts a little slower. A travel move
@@ -395,6 +412,7 @@ void BlockBuilder::KeepLayersWithFaults() {
 
 void BlockBuilder::Finish() {
   if (file_.blocks.empty()) return;
+  EndBlock();
   file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
   KeepLayersWithFaults();
   // A first mark that most of the print stands before is none.

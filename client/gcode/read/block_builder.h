@@ -66,6 +66,9 @@ class BlockBuilder {
   void BeginBlock(const Step& step, const MachineState& before, const MachineState& after);
   void ExtendBlock(const Step& step, const MachineState& before, const MachineState& after);
   bool GoesOn() const;
+  // `block`, of `layer`, is a scarf seam as far as it has been read.
+  bool IsScarf(const Block& block, const Layer& layer) const;
+  void EndBlock();
   // `block` begins here, and its first segment ends at `first_end_z`.
   bool BeginsLayer(const Block& block, Decimal first_end_z) const;
   void CloseLink(const Block& block, Decimal first_end_z);
@@ -90,6 +93,8 @@ class BlockBuilder {
   Where where_ = Where::kHead;
   uint16_t pending_ = 0;  // BlockFlags of lines after the last extruding one
   OpenLink link_;
+
+  bool ends_rising_ = false;  // the last segment of the last block rises
 
   // Set while the last block ends with a tail: its state without it, and the tail in a link.
   bool has_tail_ = false;

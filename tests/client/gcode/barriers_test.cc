@@ -68,7 +68,7 @@ TEST(DescribeBarriers, CallAPurgeLineWhatItIs) {
   text.insert(text.find(";LAYER"), purge);
 
   EXPECT_THAT(BarriersOf(text), AllOf(HasSubstr("script"), HasSubstr("purge line (first in part"),
-                                      Not(HasSubstr("scarf")), Not(HasSubstr("tower"))));
+                                      Not(HasSubstr("spiral")), Not(HasSubstr("tower"))));
 }
 
 TEST(DescribeBarriers, AskForNoPolicyThatIsAskedFor) {
