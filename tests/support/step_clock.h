@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 
 #include "engine/base/budget.h"
 
@@ -37,6 +38,18 @@ class StepClock : public TimeSource {
   const int64_t stop_at_;
   const int64_t stop_;
   mutable std::atomic<int64_t> readings_ = 0;
+};
+
+// The time that the thread which asks has had: a deadline by it leaves a search as much work on a
+// busy machine.
+class ThreadClock : public TimeSource {
+ public:
+  Budget::Clock::time_point Now() const override {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return Budget::Clock::time_point(std::chrono::seconds(time.tv_sec) +
+                                     std::chrono::nanoseconds(time.tv_nsec));
+  }
 };
 
 }  // namespace traverse

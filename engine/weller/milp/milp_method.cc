@@ -23,10 +23,7 @@ MilpMethod::MilpMethod(const MilpOptions& options, double time_limit_seconds, Fi
     : options_(options), time_limit_seconds_(time_limit_seconds), first_(std::move(first)) {}
 
 Budget MilpMethod::StepBudget(const Budget& budget, double share) const {
-  const Budget limited = budget.Within(Seconds(time_limit_seconds_));
-  if (!budget.deadline()) return limited;
-  const std::chrono::duration<double> left = *budget.deadline() - Budget::Clock::now();
-  return limited.Within(Seconds(left.count() * share));
+  return budget.WithShare(share).Within(Seconds(time_limit_seconds_));
 }
 
 std::vector<TabuElite> MilpMethod::Finish(const LayerProblem& problem, MilpRoute found,
