@@ -241,7 +241,9 @@ class LayerChooser::Impl {
       const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
       AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
     }
-    if (polish_) objects_.AddTo(layer, tries_, std::move(rules), filler_, column);
+    if (!objects_.any()) return;
+    const LayerFreedom freedom = FreedomWithin(layer, rules);
+    objects_.AddTo(layer, tries_, freedom, std::move(rules), filler_, column);
   }
 
   // The orders that `tries` have for layer `layer`, merged by `rules`.

@@ -1,6 +1,7 @@
 #include "client/gcode/choose/object_orders.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "client/gcode/choose/round_trip.h"
@@ -272,12 +273,14 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
 }
 
 void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries,
-                         MergeRules rules, const ColumnFiller& filler, LayerColumn& column) const {
+                         const LayerFreedom& freedom, MergeRules rules, const ColumnFiller& filler,
+                         LayerColumn& column) const {
+  assert(any());
   constexpr size_t kBests = 2;
   const auto asked = [layer](const auto& orders) { return !orders[layer].empty(); };
-  if (!any() || std::none_of(tries.begin(), tries.end(), asked)) return;
+  if (std::none_of(tries.begin(), tries.end(), asked)) return;
   const Layer& of_file = file_.layers[layer];
-  const LayerObjects objects = ObjectsOf(of_file, *rules.freedom);
+  const LayerObjects objects = ObjectsOf(of_file, freedom);
   if (objects.runs.empty()) return;
   std::vector<LayerOrder> moved;
   for (const LayerOrder* base : FastestOrders(column, kBests)) {
@@ -287,7 +290,7 @@ void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>
   }
   for (const LayerOrder& order : moved) {
     rules.places = column.writer->PlacesOf(order);
-    filler.Add(SettledOrder(*column.writer, order, rules), layer, column);
+    filler.Add(rules.polish ? SettledOrder(*column.writer, order, rules) : order, layer, column);
   }
 }
 

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -27,7 +29,9 @@ using testing::Notation;
 using testing::Notations;
 using testing::PillarPrint;
 
-GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe) {
+// Without `polish` as for a strategy that is asked for by name.
+GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe,
+                       std::optional<PolishLimit> polish = PolishLimit{}) {
   const auto file = ReadGcode(text, "part.gcode");
   EXPECT_TRUE(file.ok()) << file.status();
   std::vector<FileOrder> tries(1);
@@ -40,7 +44,7 @@ GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe) {
   }
   RewriteOptions options;
   options.policy = policy;
-  options.polish = PolishLimit{};
+  options.polish = std::move(polish);
   const auto rewrite = RewriteGcode(**file, tries, options);
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return *rewrite;
@@ -98,6 +102,13 @@ TEST(MovedObjects, ChangePlacesInEveryNotation) {
       EXPECT_EQ(rewrite.layers_unproven, 0) << notation.name << " " << rewrite.unproven;
     }
   }
+}
+
+TEST(MovedObjects, ChangePlacesWithoutFurtherSearch) {
+  const GcodeRewrite rewrite =
+      Optimised(Text(PillarPrint(), Klipper()), Policy::kSafe, std::nullopt);
+  EXPECT_LT(Share(rewrite), 0.9) << rewrite.unproven;
+  EXPECT_EQ(rewrite.layers_unproven, 0) << rewrite.unproven;
 }
 
 // The first object of the first layer and the last one of the last layer cannot move; all others
