@@ -18,6 +18,8 @@ MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02
 REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no rest at all
 SHARE_SLACK = 2.0  # points of a per cent
+ACCEL = 3  # in print_trace.STATE
+USUAL_ACCEL = 1000.0
 
 
 def cells_of(move, size):
@@ -404,26 +406,51 @@ def rest(before, after, options):
 def progress(before, after, options):
     """What a display is told comes in sequence, each share near where it is true."""
     kinds = {kind for _, kind, _, _ in before.progress}
+    stops = None
     for kind in sorted(kinds):
-        old = [(value, now) for _, k, value, now in before.progress if k == kind]
+        old = [(value, now, line) for line, k, value, now in before.progress if k == kind]
         new = [(value, now, line) for line, k, value, now in after.progress if k == kind]
-        if [value for value, _ in old] != [value for value, _, _ in new]:
+        if [value for value, _, _ in old] != [value for value, _, _ in new]:
             yield f"progress: the values of {kind} are not those of the original in its order"
+            continue
+        found = misplaced(kind, old, new, before.seconds, after.seconds)
+        if found:
+            stops = stops or (stopping_clock(before), stopping_clock(after))
+            stopping = [[(value, clock(line), line) for value, _, line in told]
+                        for told, clock in zip((old, new), stops)]
+            if misplaced(kind, *stopping, stops[0](None), stops[1](None)):
+                yield found
+
+
+def stopping_clock(side):
+    """When a line comes, or the end, if each move begins and ends at a stop. Printers are between that and the nominal
+    time."""
+    lines, moments, now = [], [0.0], 0.0
+    for move in side.moves:
+        mm = math.hypot(move.length, move.z1 - move.z0)
+        accel = float(move.state[ACCEL] or USUAL_ACCEL)
+        speed = mm / move.seconds if move.seconds else 0.0
+        if mm and speed * speed < accel * mm:
+            now += move.seconds + speed / accel
         else:
-            yield from misplaced(kind, old, new, before.seconds, after.seconds)
+            now += 2 * math.sqrt(mm / accel) if mm else move.seconds
+        lines.append(move.line)
+        moments.append(now)
+    return lambda line: moments[-1 if line is None else bisect.bisect_left(lines, line)]
 
 
 def misplaced(kind, old, new, old_seconds, new_seconds):
-    """What states no share is true where it was."""
+    """A fault, if there is one. What states no share is true where it was."""
     worst = (0.0, None)
-    for (value, then), (_, now, line) in zip(old, new):
+    for (value, then, _), (_, now, line) in zip(old, new):
         was, share = 100 * then / old_seconds, 100 * now / new_seconds
         stated = value if isinstance(value, float) else was
         off = abs(stated - share) - abs(stated - was)
         worst = max(worst, (off, (line, value, was, share)), key=lambda pair: pair[0])
-    if worst[0] > SHARE_SLACK:
-        line, value, was, share = worst[1]
-        yield f"progress: {kind} says {value} at {share:.1f} % of the time, {was:.1f} % in the original; line {line}"
+    if worst[0] <= SHARE_SLACK:
+        return None
+    line, value, was, share = worst[1]
+    return f"progress: {kind} says {value} at {share:.1f} % of the time, {was:.1f} % in the original; line {line}"
 
 
 # -------------------------------------------------------------------------------------------------------------- labels

@@ -215,6 +215,17 @@ class Checks(unittest.TestCase):
         self.assertEqual(faults(before, HEAD + layer(0.2, loop((2, 3, 0, 1), 0.1)), "free"), set())
         self.assertIn("deposits", faults(before, HEAD + layer(0.2, loop((2, 3, 0, 1), 0.0)), "free"))
 
+    def test_a_share_is_as_true_as_the_clock(self):
+        """A long travel takes more of the nominal time than of that with accelerations, as one move of many."""
+        def told(at):
+            first = [f"G1 X{10 + 0.2 * (i % 2)} Y{10 + 0.1 * i:.1f} E0.01" for i in range(60)]
+            second = [f"G1 X{210 + 0.2 * (i % 2)} Y{10 + 0.1 * i:.1f} E0.01" for i in range(60)]
+            lines = ["M204 S500", "G1 X10 Y10 Z.2 F9000", "G1 F2400", *first, "G1 X210 Y10 F24000", "G1 F2400", *second]
+            return HEAD + lines[:at] + ["M73 P52"] + lines[at:]
+
+        self.assertNotIn("progress", faults(told(63), told(65)))
+        self.assertIn("progress", faults(told(63), told(90)))
+
     def test_any_message_of_progress_is_followed(self):
         def told(at, text):
             return self.towers[:at] + [text] + self.towers[at:]
