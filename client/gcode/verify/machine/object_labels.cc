@@ -20,11 +20,13 @@ bool Follows(std::string_view line, std::string_view prefix, std::string_view& r
   return true;
 }
 
-// The value of NAME= among the parameters of a macro; else all of them.
+// The value of NAME= among the parameters of a macro, perhaps quoted; else all of them.
 std::string_view NameIn(std::string_view parameters) {
   const size_t at = parameters.find("NAME=");
   if (at == std::string_view::npos) return parameters;
   const std::string_view name = parameters.substr(at + 5);
+  const bool quoted = !name.empty() && (name[0] == '\'' || name[0] == '"');
+  if (quoted) return name.substr(0, name.find(name[0], 1));
   return name.substr(0, name.find_first_of(" \t;"));
 }
 

@@ -40,6 +40,9 @@ inline std::vector<Notation> Notations() {
        [](int n) {
          return absl::StrCat("; stop printing object p", n, "\nEXCLUDE_OBJECT_END NAME=p", n, "\n");
        }},
+      {"Klipper with quotes",
+       [](int n) { return absl::StrCat("EXCLUDE_OBJECT_START NAME='part ", n, "'\n"); },
+       [](int n) { return absl::StrCat("EXCLUDE_OBJECT_END NAME='part ", n, "'\n"); }},
       {"Bambu",
        [](int n) {
          return absl::StrCat("; start printing object, unique label id: ", n, "\nM624 A", n,
