@@ -62,8 +62,8 @@ bool SaysLayer(std::string_view line) {
          (small.starts_with("m73") && absl::StrContains(small, "l"));
 }
 
-// Copies a text with some of its lines of progress elsewhere: where a deposit begins, or where such
-// a line was, whichever of the two around its moment is nearer.
+// Copies a text with some of its lines of progress elsewhere: where a deposit begins or ends, or
+// where such a line was, whichever of the two around its moment is nearer.
 class Mover {
  public:
   // `moments`: [line of progress of `text`] when it is true, or unset if it stays.
@@ -75,6 +75,7 @@ class Mover {
 
   // The next step of the text, which begins after `seconds`.
   void Take(const Step& step, double seconds) {
+    const bool ends = std::exchange(deposits_, step.kind == StepKind::kExtrude);
     if (step.kind == StepKind::kProgress) {
       if (moments_[seen_]) {
         TakeOut(step.line, seconds);
@@ -82,7 +83,7 @@ class Mover {
         PassBy(step.line);
       }
       ++seen_;
-    } else if (step.kind == StepKind::kExtrude || seconds >= is_.seconds) {
+    } else if (deposits_ || ends || seconds >= is_.seconds) {
       PutUpTo(step.line.begin, seconds);
     }
   }
@@ -133,10 +134,11 @@ class Mover {
   const ProgressMoments& is_;
   const std::vector<std::optional<double>>& moments_;
   std::string out_;
-  size_t copied_ = 0;  // of the text
-  size_t next_ = 0;    // line to put
-  size_t seen_ = 0;    // lines that have been passed
-  size_t place_ = 0;   // the last one where a line may stand
+  size_t copied_ = 0;      // of the text
+  size_t next_ = 0;        // line to put
+  size_t seen_ = 0;        // lines that have been passed
+  bool deposits_ = false;  // the last step
+  size_t place_ = 0;       // the last one where a line may stand
   double place_seconds_ = 0;
 };
 

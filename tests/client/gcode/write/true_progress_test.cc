@@ -83,9 +83,9 @@ TEST(WithTrueProgress, GoesToTheNearerSideOfATravel) {
   const auto moved = WithTrueProgress(*file, Travelling({0, 0, 4, 0, 0, 0}));
 
   ASSERT_TRUE(moved);
-  // Three seconds are to be over: it is one before the second line, and six before the third.
-  EXPECT_EQ(PrintedBefore(*moved, "M73 P50\n"), 1);
-  EXPECT_EQ(PrintedBefore(*moved, "M73 Q50\n"), 1);
+  // Three seconds are to be over: it is two behind the second line, and six before the third.
+  EXPECT_EQ(PrintedBefore(*moved, "M73 P50\n"), 2);
+  EXPECT_EQ(PrintedBefore(*moved, "M73 Q50\n"), 2);
 }
 
 // Between two long travel moves its own place is the nearest to its moment.
