@@ -72,9 +72,11 @@ std::vector<std::string> SecondTravel(const std::string& text) {
 const Travel kLifted = {"G1 E-.8 F2100\nG1 ZTOP F9000\n", "", "G1 ZLOW\nG1 E.8 F2100\n"};
 const Travel kSinking = {"G1 E-.8 F2100\n", " ZLOW", "G1 E.8 F2100\n"};
 const Travel kOpen = {"", "", "G1 ZLOW\n"};
+const Travel kRelative = {"G1 E-.8 F2100\nG91\nG1 Z.4 F9000\nG90\nM83\n", "",
+                          "G91\nG1 Z-.4 F9000\nG90\nM83\nG1 E.8 F2100\nG1 ZLOW F9000\n"};
 
 TEST(ScarfSeams, ChangePlaces) {
-  for (const Travel& travel : {kLifted, kSinking, kOpen}) {
+  for (const Travel& travel : {kLifted, kSinking, kOpen, kRelative}) {
     const std::string text = Seams(travel);
     const GcodeRewrite rewrite = InOrder(text, {0, 2, 3, 1});
 
@@ -82,6 +84,23 @@ TEST(ScarfSeams, ChangePlaces) {
     EXPECT_LT(rewrite.after.travel_mm, rewrite.before.travel_mm - 60);
     EXPECT_TRUE(VerifyGcode(text, "a", rewrite.text, "b", {}).ok());
   }
+}
+
+// The lift of travel between lines counts from the height of the layer, as that to seams does.
+TEST(ScarfSeams, ChangePlacesWithLines) {
+  const auto line = [](int y, const char* z) {
+    return absl::StrCat("G1 E-.8 F2100\nG1 Z", z, ".4 F9000\nG1 X0 Y", y, " F9000\nG1 Z", z,
+                        "\nG1 E.8 F2100\n;TYPE:Sparse infill\nG1 F1200\nG1 X9 Y", y, " E.5\n");
+  };
+  std::string text = Seams(kLifted);
+  for (const char* z : {"1", "2", "3"}) {
+    const std::string mark = absl::StrCat("G1 Z", z, " F9000\n");
+    text = absl::StrReplaceAll(
+        text, {{mark, mark + line(20, z) + line(60, z) + line(40, z) + line(80, z)}});
+  }
+  const GcodeRewrite rewrite = InOrder(text, {0, 2, 1, 3, 4, 6, 7, 5});
+
+  EXPECT_EQ(rewrite.layers_changed, 3) << rewrite.unproven;
 }
 
 // From 24 to 40 mm; the next seam begins at 1.1 mm in the layer of 2 mm.
