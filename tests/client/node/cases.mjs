@@ -219,7 +219,7 @@ test("a file comes back with progress", async (t) => {
   t.after(() => client.close());
   const seen = [];
 
-  const made = await client.rewrite(process.env.TRAVERSE_SAMPLE, { options: { report: true }, onProgress: (one) => seen.push(one) });
+  const made = await client.rewrite(process.env.TRAVERSE_SHORT, { options: { report: true }, onProgress: (one) => seen.push(one) });
 
   assert.equal(made.summary.verified, true);
   assert.equal(made.data.length, made.summary.bytes);
@@ -291,7 +291,7 @@ test("another gateway takes the file of one that was killed", async (t) => {
 test("the examples of its guide run", async (t) => {
   const server = await program(t, "TRAVERSE_SERVER");
   const gateway = await program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0");
-  await cp(process.env.TRAVERSE_SAMPLE, "part.gcode");
+  await cp(process.env.TRAVERSE_SHORT, "part.gcode");
   const blocks = [...(await readFile(process.env.TRAVERSE_GUIDE, "utf8")).matchAll(/```js\n(.*?)```/gs)].map(([, code]) => code);
   for (const [number, block] of blocks.entries()) {
     await writeFile(`guide${number}.mjs`, block.replace("127.0.0.1:50051", server.address).replace("127.0.0.1:50061", gateway.address));
@@ -308,6 +308,6 @@ test("the examples of deploy run", async (t) => {
   await writeFile("job.json", JSON.stringify({ options: { strategy: { name: "greedy" } }, layers: layers(3) }));
 
   assert.equal((await run("examples/submit_job.mjs", "job.json", server.address)).match(/layer \d: travel .* mm -> .* mm/g).length, 3);
-  await run("examples/send_file.mjs", process.env.TRAVERSE_SAMPLE, "shorter.gcode", gateway.address);
+  await run("examples/send_file.mjs", process.env.TRAVERSE_SHORT, "shorter.gcode", gateway.address);
   assert.match((await readFile("shorter.gcode", "utf8")).slice(0, 1000), /; optimised by Traverse/);
 });

@@ -10,6 +10,9 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
+sys.path.append(str(ROOT))
+from tests.support import short_part
+
 SKIPPED = 77
 
 
@@ -42,8 +45,9 @@ def main():
             sys.exit(checked.stdout)
         shutil.copy(HERE / "cases.mjs", farm)
         shutil.copytree(ROOT / "deploy/examples/node", farm / "examples")
-        more = dict(os.environ, TRAVERSE_GUIDE=str(ROOT / "client/node/README.md"),
-                    TRAVERSE_SAMPLE=str(ROOT / "deploy/samples/clusters13.gcode"))
+        short_part.write(work / "short.gcode")
+        more = dict(os.environ, TRAVERSE_GUIDE=str(ROOT / "client/node/README.md"), TRAVERSE_SAMPLE=str(short_part.SAMPLE),
+                    TRAVERSE_SHORT=str(work / "short.gcode"))
         return subprocess.run(["node", "--test", "cases.mjs"], cwd=farm, env=more, check=False).returncode
 
 

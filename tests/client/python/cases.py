@@ -258,7 +258,7 @@ class Real(unittest.TestCase):
 
     def test_a_file_comes_back_with_progress(self):
         gateway = self.start(Gateway)
-        part = pathlib.Path(os.environ["TRAVERSE_SAMPLE"])
+        part = pathlib.Path(os.environ["TRAVERSE_SHORT"])
         seen = []
         with GcodeGateway([gateway.address]) as client:
             made = client.rewrite(part, options=RewriteOptions(report=True), on_progress=seen.append)
@@ -395,7 +395,7 @@ class Package(unittest.TestCase):
         self.addCleanup(server.kill)
         self.addCleanup(gateway.kill)
         with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "part.gcode").write_bytes(pathlib.Path(os.environ["TRAVERSE_SAMPLE"]).read_bytes())
+            pathlib.Path(folder, "part.gcode").write_bytes(pathlib.Path(os.environ["TRAVERSE_SHORT"]).read_bytes())
             for block in blocks:
                 block = block.replace("127.0.0.1:50051", server.address).replace("127.0.0.1:50061", gateway.address)
                 done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=120)
@@ -419,7 +419,7 @@ class Package(unittest.TestCase):
             pathlib.Path(folder, "job.pb").write_bytes(OptimizeBatchRequest(layers=layers(3)).SerializeToString())
             said = run("submit_job.py", "job.pb", *(server.address for server in servers))
             self.assertEqual(len(re.findall(r"layer \d: travel .* mm -> .* mm", said)), 3)
-            run("send_file.py", os.environ["TRAVERSE_SAMPLE"], "shorter.gcode", gateway.address)
+            run("send_file.py", os.environ["TRAVERSE_SHORT"], "shorter.gcode", gateway.address)
             self.assertIn(b"; optimised by Traverse", pathlib.Path(folder, "shorter.gcode").read_bytes()[:1000])
 
 

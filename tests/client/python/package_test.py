@@ -9,6 +9,8 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
+sys.path.append(str(ROOT))
+from tests.support import short_part
 
 
 def run(*command, **more):
@@ -33,9 +35,11 @@ def main():
         from_source = environment(work / "from_source", sdist)
         run(from_source, "-c", "import traverse_client; traverse_client.TravelOptimizer(['127.0.0.1:1']).close()", cwd=work)
         python = environment(work / "installed", wheel)
+        short_part.write(work / "short.gcode")
         more = dict(os.environ, GRPC_VERBOSITY="NONE", TRAVERSE_GUIDE=str(ROOT / "client/python/README.md"),
                     TRAVERSE_EXAMPLES=str(ROOT / "deploy/examples/python"),
-                    TRAVERSE_SAMPLE=str(ROOT / "deploy/samples/clusters13.gcode"), PYTHONDONTWRITEBYTECODE="1")
+                    TRAVERSE_SAMPLE=str(short_part.SAMPLE), TRAVERSE_SHORT=str(work / "short.gcode"),
+                    PYTHONDONTWRITEBYTECODE="1")
         return subprocess.run([python, HERE / "cases.py", *sys.argv[1:]], cwd=work, env=more, check=False).returncode
 
 
