@@ -68,7 +68,8 @@ std::optional<double> Progress::SecondsLeft(double elapsed_seconds) const {
   if (since <= 0 || since < kTellingShare * all) return std::nullopt;
   const double left = (all - done_work_) * (elapsed_seconds - first_seconds_) / since;
   return std::max(left, 0.0) +
-         (work_.seconds_before + elapsed_seconds + left) * work_.stages_behind;
+         (work_.seconds_before + elapsed_seconds + left) * work_.stages_behind +
+         work_.seconds_behind;
 }
 
 std::string Progress::Text(absl::Duration elapsed, int width) const {

@@ -40,12 +40,11 @@ bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
 }
 
 // How many times as long as the searches of a file up to search `number`, from 0, takes what
-// follows: the other searches, which are two or, with `fewer` crossings, four, and what makes their
-// orders better. By the processor time of 14 runs, 30 of 194 forecasts are off by more than a
-// factor of two then; a file of many islands that rest is.
+// follows, beside SecondsBehind: the other searches, which are two or, with `fewer` crossings,
+// four, and what makes their orders better.
 double StagesBehind(size_t number, bool fewer) {
   constexpr std::array<double, 4> kSearches = {1, 0.45, 1, 0.45};
-  constexpr double kBetterOrders = 0.5;  // beside all searches
+  constexpr double kBetterOrders = 1;  // beside all searches
   const auto sum = [&](size_t count) {
     return std::accumulate(kSearches.begin(), kSearches.begin() + count, 0.0);
   };
@@ -173,6 +172,16 @@ std::vector<double> WorkOf(const InputJob& job) {
   return work;
 }
 
+// What making orders better and writing them takes for the paths of `job`, though the searches may
+// have been done at once. Of 90 forecasts of nine files four are off by more than a factor of two.
+double SecondsBehind(const InputJob& job) {
+  constexpr double kProcessorSecondsPerPath = 0.55e-3;
+  double paths = 0;
+  for (const v1::Layer& layer : job.layers) paths += layer.plan().paths_size();
+  const int threads = job.gcode ? gcode::ThreadsFor(job.gcode->text.size()) : 1;
+  return kProcessorSecondsPerPath * paths / threads;
+}
+
 using Answers = std::vector<std::optional<v1::LayerResult>>;  // [layer]
 
 size_t Missed(const Answers& answers) {
@@ -216,7 +225,8 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
   *asked.mutable_strategy() = StrategyFor(job, options);
   if (options.progress.on_search) options.progress.on_search(job.layers.size());
   if (options.progress.on_work) {
-    options.progress.on_work({WorkOf(job), options.seconds_before, options.stages_behind});
+    options.progress.on_work({WorkOf(job), options.seconds_before, options.stages_behind,
+                              options.stages_behind > 0 ? SecondsBehind(job) : 0});
   }
   const absl::Time began = absl::Now();
   CallOptions call;

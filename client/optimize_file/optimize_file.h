@@ -50,6 +50,9 @@ struct SearchWork {
 
   // What follows takes as long as this search and those before it, about so many times.
   double stages_behind = 0;
+
+  // And this long beside, whatever searches take.
+  double seconds_behind = 0;
 };
 
 // Called while the service searches, on the calling thread. Each may be empty.

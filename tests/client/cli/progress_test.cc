@@ -44,6 +44,15 @@ TEST(Progress, WhatFollowsAllSearchesIsToldByAllOfThem) {
   EXPECT_EQ(progress.Text(absl::Seconds(22), 80), "auto: 2/3 layers, 1 min 5 s left");
 }
 
+// The same, and what follows takes a minute more.
+TEST(Progress, WhatFollowsMayTakeSomeTimeWhateverSearchesTake) {
+  Progress progress(Progress::Style::kLines, "auto", 3);
+  progress.Expect({{10, 10, 80}, 60, 0.5, 60});
+  progress.Take(Layer(0, 0), absl::Seconds(20));
+  progress.Take(Layer(0, 0), absl::Seconds(22));
+  EXPECT_EQ(progress.Text(absl::Seconds(22), 80), "auto: 2/3 layers, 2 min 5 s left");
+}
+
 TEST(Progress, TellsNoTimeLeftAfterASmallLayerAlone) {
   Progress progress(Progress::Style::kLines, "auto", 3);
   progress.Expect({{500, 1, 499}, 0, 2});
