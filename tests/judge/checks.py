@@ -12,7 +12,7 @@ CELL_MM = 0.5  # of the maps of heights and of what covers what
 FINE_CELL_MM = 0.2  # lines of ironing lie closer than those of skin
 ISLAND_CELLS_MM = (0.5, 0.7)  # islands in cells that touch count as one: from 0.5 mm apart on, never beyond 2 mm
 HALF_WALL_MM = 0.2
-END_ON_WALL_MM = 0.02
+END_ON_WALL_MM = 0.02  # beside what loops end short of their start
 CROSSING_MM = 1e-9
 MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02
@@ -260,9 +260,9 @@ def distance(a, b):
     return min(to_point(p, r, s), to_point(q, r, s), to_point(r, p, q), to_point(s, p, q))
 
 
-def meets(move, walls):
+def meets(move, walls, on_wall_mm):
     """True if the move without its ends lies upon one of `walls`: {cell: moves}. It may leave a wall, or come to
-    one, at a small angle."""
+    one, at a small angle: what ends nearer than `on_wall_mm` to a wall ends on it."""
     x, y = (move.x1 - move.x0) / move.length, (move.y1 - move.y0) / move.length
     middle = ((move.x0 + MOVE_END_MM * x, move.y0 + MOVE_END_MM * y),
               (move.x1 - MOVE_END_MM * x, move.y1 - MOVE_END_MM * y))
@@ -271,13 +271,13 @@ def meets(move, walls):
 
     def reach(wall):
         near, far = sorted(distance((end, end), wall) for end in ((move.x0, move.y0), (move.x1, move.y1)))
-        return CROSSING_MM if near < END_ON_WALL_MM and far > HALF_WALL_MM else HALF_WALL_MM
+        return CROSSING_MM if near < on_wall_mm and far > HALF_WALL_MM else HALF_WALL_MM
 
     return any(distance(middle, wall) < reach(wall)
                for wall in (((wall.x0, wall.y0), (wall.x1, wall.y1)) for wall in near.values()))
 
 
-def walls_and_tops(side):
+def walls_and_tops(side, on_wall_mm):
     """(crossings, longest mm, mm over tops) of moves with an open nozzle upon outer walls, and over areas that nothing
     covers later."""
     tops = {}
@@ -297,7 +297,7 @@ def walls_and_tops(side):
                 if is_outer(move.state):
                     outer.setdefault(cell, []).append(move)
         elif move.length > 3 and move.retracted < 0.02 and move.e == 0:
-            if meets(move, outer):
+            if meets(move, outer, on_wall_mm):
                 crossings += 1
                 longest = max(longest, move.length)
             passed = list(cells_of(move, CELL_MM))[3:-3]
@@ -318,7 +318,9 @@ def is_outer(state):
 
 def stringing(before, after, options):
     """No more open travel across visible walls or over visible surfaces than in the original."""
-    old, new = walls_and_tops(before), walls_and_tops(after)
+    # A loop's end is beside its first side; the gap is half of what two ends may have between them.
+    on_wall_mm = options.loop_gap_mm / 2 + END_ON_WALL_MM
+    old, new = walls_and_tops(before, on_wall_mm), walls_and_tops(after, on_wall_mm)
     if new[0] > old[0] * 1.02 + 1:
         yield f"stringing: {old[0]} open moves across outer walls became {new[0]}"
     if new[1] > old[1] * 1.1 + 1:

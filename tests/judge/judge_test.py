@@ -187,6 +187,13 @@ class Checks(unittest.TestCase):
         for to, found in (("X20 Y11.5", False), ("X20 Y10.1", True), ("X5 Y15", False), ("X25 Y11.5", True)):
             self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, [f"G1 {to} F9000"])), found, to)
 
+    def test_open_travel_may_leave_the_end_of_a_loop_beside_its_first_side(self):
+        walls = [";TYPE:External perimeter"] + block(10, 0.2)[:-1] + ["G1 X10 Y10.06 E.3"]
+        before = HEAD + layer(0.2, walls)
+
+        for to, found in (("X15.5 Y10.45", False), ("X15.5 Y10.06", True), ("X15.5 Y9.99", True)):
+            self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, [f"G1 {to} F9000"])), found, to)
+
     def test_open_travel_over_a_surface_is_found_and_over_supports_is_not(self):
         for feature, found in (("Top solid infill", True), ("Support material", False)):
             lines = [f";TYPE:{feature}"]
