@@ -277,17 +277,19 @@ std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tall
   return absl::StrCat(text, "; ", free ? kWords[cause].under_free : kWords[cause].frees);
 }
 
-// What holds besides what can be counted by paths.
-std::string Remainder(const GcodeFile& file, Policy policy) {
+// What holds besides what can be counted by paths; `searched`: though orders were looked for.
+std::string Remainder(const GcodeFile& file, Policy policy, bool searched) {
   const double least_seconds = LeastLayerSeconds(file.text);
   if (IsFree(policy) || least_seconds <= 0) {
-    return absl::StrCat("the rest may change places, but no other order found is faster",
+    return absl::StrCat("the rest may change places",
+                        searched ? ", but no other order found is faster" : "",
                         policy == Policy::kSafe ? " with visible walls begun where they are" : "");
   }
   return absl::StrFormat(
-      "of the rest, no order found is faster that lets each island rest %.4g s, or as long as in "
-      "the file, before it is printed on%s; --policy=free gives that up, and a lower least layer "
-      "time in the slicer a part of it",
+      "%s each island rest %.4g s, or as long as in the file, before it is printed on%s; "
+      "--policy=free gives that up, and a lower least layer time in the slicer a part of it",
+      searched ? "of the rest, no order found is faster that lets"
+               : "the rest may change places in orders that let",
       least_seconds, policy == Policy::kSafe ? ", and visible walls begin where they do" : "");
 }
 
@@ -330,7 +332,7 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
   for (const Cause cause : causes) {
     if (lines.size() < most) lines.push_back(gcode::TextOf(file, policy, cause, all));
   }
-  if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy));
+  if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy, !counted.empty()));
   return lines;
 }
 

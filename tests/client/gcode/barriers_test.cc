@@ -37,7 +37,8 @@ std::string BarriersOf(const std::string& text, Policy policy = Policy::kSafe,
                        const Allowance& allow = {}) {
   const auto file = ReadGcode(text, "part.gcode");
   EXPECT_TRUE(file.ok()) << file.status();
-  const std::vector<std::string> lines = DescribeBarriers(**file, policy, allow);
+  const std::vector<bool> all((*file)->layers.size(), true);
+  const std::vector<std::string> lines = DescribeBarriers(**file, policy, allow, all);
   EXPECT_LE(lines.size(), kMostBarriers);
   return absl::StrJoin(lines, "\n");
 }
@@ -58,6 +59,18 @@ TEST(DescribeBarriers, SpeakOfOnePathAndOfNoRest) {
               HasSubstr("2 paths in 2 layers are alone in a layer"));
   EXPECT_THAT(BarriersOf(Lines("") + "; slow_down_layer_time = 0\n"),
               AllOf(Not(HasSubstr("rest 0 s")), HasSubstr("no other order found is faster")));
+}
+
+// `inspect` says the same before any search.
+TEST(DescribeBarriers, ClaimNoSearchWhereNoneWas) {
+  for (const char* rest : {"0", "10"}) {
+    const std::string text = absl::StrCat(Lines(""), "; slow_down_layer_time = ", rest, "\n");
+    const auto file = ReadGcode(text, "part.gcode");
+    ASSERT_TRUE(file.ok()) << file.status();
+    const std::string said = absl::StrJoin(DescribeBarriers(**file, Policy::kSafe, {}), "\n");
+    EXPECT_THAT(said, AllOf(HasSubstr("the rest may change places"), Not(HasSubstr("found"))));
+    EXPECT_THAT(BarriersOf(text), HasSubstr("found is faster"));
+  }
 }
 
 // It is pinned as spiral vases are.
