@@ -497,8 +497,9 @@ def tail_lines(side):
 
 
 # Commands that belong to a path and come and go with it.
-OF_PATHS = ("M204", "M205", "M201", "M203", "SET_PRESSURE_ADVANCE", "SET_VELOCITY_LIMIT", "M73", "M106", "M107", "M900",
-            "M486", "M624", "M625", "EXCLUDE_OBJECT", "M221", "M572", "M117", "M118", "M532", "SET_DISPLAY_TEXT", "@")
+OF_PATHS = ("M204", "M205", "M201", "M203", "M566", "M207", "M215", "SET_VELOCITY_LIMIT", "M900", "M572", "M233",
+            "SET_PRESSURE_ADVANCE", "M221", "M106", "M107", "M73", "M117", "M118", "M532", "SET_DISPLAY_TEXT", "M486",
+            "M624", "M625", "EXCLUDE_OBJECT", "@")
 
 
 def commands(side, first, end):

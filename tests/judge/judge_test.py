@@ -53,6 +53,14 @@ class Checks(unittest.TestCase):
 
         self.assertIn("deposits", faults(self.towers, after))
 
+    def test_another_setting_is_found(self):
+        for setting in ("M900 K0.{} L1000 M10", "M233 X0.{0} Y0.{0}", "M566 X{}", "M207 X{}", "M215 X{}", "M221 S{}"):
+            before = HEAD + [setting.format(20)] + self.towers[len(HEAD):]
+            at = before.index(";LAYER_CHANGE", len(HEAD) + 2)
+            after = before[:at] + [setting.format(30)] + before[at:]
+
+            self.assertIn("deposits", faults(before, after), setting)
+
     def test_printing_with_filament_pulled_back_is_found(self):
         at = len(HEAD) + 2
         after = self.towers[:at] + ["G1 E-0.8 F2100"] + self.towers[at:]

@@ -177,12 +177,12 @@ class Machine:
             self.set("fan", tuple(sorted(self.fans.items())))
         elif code in ("M104", "M109") and "S" in words:
             self.set("heat", words["S"])
-        elif code == "M205":
+        elif code in ("M205", "M566", "M215") or (code == "M207" and "X" in words):
             self.jerk.update({letter: value for letter, value in words.items() if letter != "M"})
             self.set("jerk", tuple(sorted(self.jerk.items())))
         elif code == "M204":
             self.set("accel", words.get("P", words.get("S", self.state["accel"])))
-        elif code in ("M900", "M572") or text.startswith("SET_PRESSURE_ADVANCE"):
+        elif code in ("M900", "M572", "M233") or text.startswith("SET_PRESSURE_ADVANCE"):
             self.set("advance", text)
         elif code == "M221":
             self.set("flow", words.get("S", ""))
