@@ -299,7 +299,7 @@ class Checks(unittest.TestCase):
     def test_words_without_a_reason_are_found(self):
         held = "nothing to gain, the G-code stays unchanged: travel 1.00 -> 1.00 m"
         self.assertEqual(list(judge.reasons(held + "\n12 paths in 3 layers stay beside commands")), [])
-        for says in (held, held + "\n3 layers left, because step_order", held + "\ngap      0.0 % to a bound\nwords"):
+        for says in (held, held + "\n3 layers left, because made_of_parts", held + "\ngap      0.0 % to a bound\nwords"):
             self.assertEqual(len(list(judge.reasons(says))), 1, says)
 
 

@@ -50,12 +50,12 @@ void LiftLog::Append(const LiftLog& other) {
 }
 
 void Observations::Append(const Observations& other) {
-  for (size_t kind = 0; kind < feeds.size(); ++kind) {
-    AppendSeen(other.feeds[kind], feeds[kind]);
+  for (size_t kind = 0; kind < accelerations.size(); ++kind) {
     AppendSeen(other.accelerations[kind], accelerations[kind]);
   }
-  AppendSeen(other.tail_feeds, tail_feeds);
-  AppendSeen(other.signatures, signatures);
+  parts.Append(other.parts);
+  new_links.insert(new_links.end(), other.new_links.begin(), other.new_links.end());
+  primes.Append(other.primes);
   AppendSeen(other.heights.level, heights.level);
   AppendSeen(other.heights.other, heights.other);
   AppendSeen(other.rises.level, rises.level);
@@ -92,10 +92,7 @@ void Observations::Append(const Observations& other) {
   pokes.insert(pokes.end(), other.pokes.begin(), other.pokes.end());
   long_travels.insert(long_travels.end(), other.long_travels.begin(), other.long_travels.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
-  script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
-  AppendSeen(other.step_orders, step_orders);
   lifts.Append(other.lifts);
-  cycles.insert(cycles.end(), other.cycles.begin(), other.cycles.end());
   wipes.insert(wipes.end(), other.wipes.begin(), other.wipes.end());
 }
 

@@ -11,6 +11,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
+#include "client/gcode/verify/match/link_parts.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/verify/trace/trace.h"
 
@@ -161,21 +162,26 @@ struct StatedHeight {
   int64_t layer = -1;
 };
 
-// A retraction, and what undoes it.
-struct RetractionCycle {
-  uint64_t tool = 0;
-  Micro pulled = 0;
-  Micro pushed = 0;
-  bool firmware = false;
-  float early_mm = 0;        // of the travel, behind what pushes
-  bool in_parts = false;     // pushed in several parts during the travel
-  bool idle = false;         // no travel between the two
-  bool last = false;         // no other one follows before the next path
-  uint32_t pulls = 0;        // how many moves pull, unless one of them is a wipe
-  uint32_t pushes = 0;       // and how many push
-  float late_mm = 0;         // of the travel, before the retraction
-  bool known = false;        // the original has all of its moves too
-  uint64_t identity = 0;     // of all its moves
+// By how much primes of one file push more than was retracted.
+struct PrimeBalance {
+  struct Odd {
+    Micro surplus = 0;
+    uint32_t line = 0;
+    int64_t layer = -1;
+  };
+  int64_t links = 0;  // that return all but what rounding takes
+  Micro surplus = 0;  // of these together
+  Odd most;
+  Odd least;
+
+  void Add(Micro surplus_of_link, uint32_t line, int64_t of_layer);
+  void Append(const PrimeBalance& other);
+};
+
+// A link that the original does not have.
+struct NewLink {
+  std::vector<std::vector<LinkPart>> missing;  // in its layer: one list for each way to cut it
+  std::string what;                            // for people
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -254,12 +260,11 @@ struct NewOpenTravel {
 
 // What some layers of one file show.
 struct Observations {
-  std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1>
       accelerations;
-  absl::flat_hash_map<uint64_t, Seen> tail_feeds;  // of moves that continue along a path
-  absl::flat_hash_map<uint64_t, Seen> signatures;
-  absl::flat_hash_set<uint64_t> script_signatures;
+  KnownParts parts;
+  std::vector<NewLink> new_links;  // with parts that their layer does not have
+  PrimeBalance primes;
   LiftHeights heights;                  // of moves that state Z
   absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way
   std::vector<StatedHeight> stated;     // by the other file's moves
@@ -285,9 +290,7 @@ struct Observations {
   int64_t retractions_outside = 0;       // at the ends of outer walls
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
-  absl::flat_hash_map<std::string, Seen> step_orders;  // of travel: step_order.cc
   LiftLog lifts;
-  std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;
 
   void Append(const Observations& other);

@@ -24,16 +24,16 @@ enum class VerifyRule : uint8_t {
   kSeam,         // where outer walls begin
   kOpenTravels,  // across outer walls
   kLifts,        // no travel is lower than such travel is
-  kRetractions,  // how far filament is retracted, and what undoes it
+  kRetractions,  // primes give back what was retracted, all in all and at labels
   kStandstill,   // filament pushed while the head stands still
-  kSpeeds,       // feed rate and acceleration of everything but deposits
+  kSpeeds,       // the acceleration of everything but deposits
   kWipes,        // along the path that they follow, and after those that had them
   kCommands,     // none within a path, none without effect
   kProgress,     // M73 and what else tells how far the print is
-  kScripts,      // nothing from them between paths
+  kScripts,      // the moves beside them
   kPathEnds,     // moves that continue along a path
   kBounds,       // the area of all moves
-  kStepOrder,    // in which travel retracts, rises, moves, descends and primes
+  kMadeOfParts,  // new travel leaves, goes and arrives as travel of the original does
   kKeptTravels,  // between two paths that follow each other as in the original
   kObstacles,    // nothing that stands is in the way of the head
   kRest,         // of islands before they are printed on

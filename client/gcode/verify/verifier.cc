@@ -207,7 +207,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   static constexpr Rule kRules[] = {CheckWholePaths,      CheckOpenTravels,     ObserveOpenHabits,
                                     CheckKeptTravels,     CheckBends,           CheckFixedMoves,
                                     CheckScriptedTravels, CheckSinking,         ObserveLifts,
-                                    ObserveHeights,       ObserveRetractions,   ObserveStepOrder,
+                                    ObserveHeights,       ObservePrimes,        ObserveParts,
                                     ObserveFarMoves,      ObserveTravelLengths, ObserveSpeeds,
                                     CheckCommands,        CheckPathEnds,        CheckDepartures};
   for (const RuleInContext check : kInContext) {
@@ -265,7 +265,7 @@ void Verifier::CheckChunk() {
     CheckLayer(layer, found[i]);
     if (rest_) islands[i] = FindPrintedIslands(layer, heights[i]);
     if (more_ || i + 1 < layers || layer.Ended()) return;
-    ObserveLastRetraction(layer, found[i]);
+    ObserveLastParts(layer, found[i]);
     ObserveLastSpeeds(layer, found[i]);
   };
   ParallelFor(layers, threads_, check, limit_);
@@ -289,10 +289,7 @@ void Verifier::CheckChunk() {
   progress_was_.Append(chunk_was_);
   progress_is_.Append(chunk_is_);
   // What follows the last path is a script.
-  if (!more_) {
-    CheckLeaving(chunk_was_, chunk_is_, findings_);
-    ObserveScript(chunk_was_, static_cast<uint32_t>(chunk_was_.links.size()) - 1, seen_was_);
-  }
+  if (!more_) CheckLeaving(chunk_was_, chunk_is_, findings_);
 }
 
 // One layer after the other: what stands is what was printed before.
@@ -310,13 +307,12 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareBounds(seen_was_, seen_is_, context_, breaks);
   CompareTravelLengths(seen_was_, seen_is_, breaks);
   CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
-  CompareRetractions(seen_was_, seen_is_, breaks);
-  CompareStepOrder(seen_was_, seen_is_, breaks);
+  CompareParts(seen_was_, seen_is_, breaks);
+  ComparePrimes(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
   ComparePokes(seen_was_, seen_is_, breaks);
   CompareDepartures(seen_was_, seen_is_, context_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);
-  CompareScripts(seen_was_, seen_is_, breaks);
 }
 
 int64_t Verifier::LayerOf(uint32_t optimised_line) const {

@@ -31,8 +31,8 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
-void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings);
-void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
+void ObserveParts(const LayerPair& layer, LayerFindings& findings);
+void ObservePrimes(const LayerPair& layer, LayerFindings& findings);
 void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
 void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
@@ -41,11 +41,8 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings);
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings);
 void CheckDepartures(const LayerPair& layer, LayerFindings& findings);
 
-// The moves of the start and end scripts in link `link` of the original.
-void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen);
-
 // The same for what follows the last layer of both files.
-void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings);
+void ObserveLastParts(const LayerPair& layer, LayerFindings& findings);
 void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 
@@ -78,16 +75,13 @@ void CompareTravelLengths(const Observations& was, const Observations& is,
                           std::vector<Finding>& breaks);
 void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks);
-void CompareRetractions(const Observations& was, const Observations& is,
-                        std::vector<Finding>& breaks);
-void CompareStepOrder(const Observations& was, const Observations& is,
-                      std::vector<Finding>& breaks);
+void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void ComparePrimes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void ComparePokes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareDepartures(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
-void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 
 }  // namespace traverse::gcode
 

@@ -1,6 +1,4 @@
-// No move between paths comes from the start or the end script, nor from those at tool changes and
-// changes of layers; moves before a line that is not known are as they were, and so is how the head
-// leaves the print.
+// Moves before a line that is not known are as they were, and so is how the head leaves the print.
 
 #include <algorithm>
 
@@ -67,15 +65,6 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
     findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                                b == others.end() ? 0 : b->line, layer.index(),
                                "the moves before an unknown line differ from the original's"});
-  }
-}
-
-void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  for (const auto& [signature, seen] : is.signatures) {
-    if (was.signatures.contains(signature) || !was.script_signatures.contains(signature)) continue;
-    AddAt(seen,
-          {VerifyRule::kScripts, 0, 0, -1, "moves filament as only a script of the original does"},
-          breaks);
   }
 }
 

@@ -1,5 +1,5 @@
-// Feed rate and acceleration of each travel, wipe, lift and retraction are those of the same kind
-// of move within the print.
+// The acceleration of each travel, wipe, lift and retraction is that of the same kind of move
+// within the print. Their feed rates are those of parts of travel (travel/made_of_parts.cc).
 
 #include <algorithm>
 #include <array>
@@ -35,44 +35,16 @@ void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMov
   }
 }
 
-// Moves along a path without filament, at another speed than the path. `only_new`: except those of
-// the original in this layer.
-void ObserveTail(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t moves,
-                 bool only_new, Observations& seen) {
-  if (link == 0) return;
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].first_move + moves; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (!move.sideways() || move.feed == chunk.paths[link - 1].feed) continue;
-    if (only_new && layer.IsKnown(move)) continue;
-    Note(seen.tail_feeds, static_cast<uint64_t>(move.feed), move, layer.index());
-  }
-}
-
 void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
     const TraceLink& traced = chunk.links[link];
-    if (traced.scripted) {
-      ObserveScript(chunk, link, seen);
-      // What comes behind the script's last line leads to the next path, as fast as that goes.
-      for (uint32_t m = traced.first_move + traced.fixed; m < traced.end_move; ++m) {
-        const TraceMove& move = chunk.moves[m];
-        if (!move.in_print) continue;
-        Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
-      }
-      continue;
-    }
-    ObserveTail(layer, chunk, link, tails.At(link), false, seen);
+    if (traced.scripted) continue;
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
-      if (!move.in_print) {
-        seen.script_signatures.insert(move.signature);
-        continue;
-      }
-      Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+      if (!move.in_print) continue;
       Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
-      Note(seen.signatures, move.signature, move, layer.index());
     }
   }
 }
@@ -131,108 +103,22 @@ bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
          move.length_mm() > LoopGapMm(is, link - 1) || move.feed != is.paths[link - 1].feed;
 }
 
-// The speeds of unretracted and of retracted travel of a layer.
-using TravelFeeds = std::array<absl::flat_hash_set<Micro>, 2>;
-
-TravelFeeds TravelFeedsOf(const LayerPair& layer) {
-  TravelFeeds feeds;
-  const TraceChunk& was = layer.was();
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
-      const TraceMove& move = was.moves[m];
-      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
-      feeds[move.open ? 0 : 1].insert(move.feed);
-    }
-  }
-  return feeds;
-}
-
-// Slicers treat retracted and unretracted travel alike: in a layer that has none of the kind of
-// `move`, the other one counts.
-bool HasOther(const TravelFeeds& feeds, const TraceMove& move) {
-  if (move.kind != MoveKind::kTravel) return false;
-  return feeds[move.open ? 0 : 1].empty() && feeds[move.open ? 1 : 0].contains(move.feed);
-}
-
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
-  const TravelFeeds feeds = TravelFeedsOf(layer);
   const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     const TraceLink& traced = chunk.links[link];
-    ObserveTail(layer, chunk, link, tails.At(link), true, seen);
     // At unknown lines every step is that of the original there: see CheckScriptedTravels.
     if (traced.scripted) continue;
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
-      if (!IsNew(layer, link, move)) continue;
-      if (!move.firmware) {
-        if (!HasOther(feeds, move)) {
-          Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
-        }
-        Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
-        if (IsTooLong(move, longest)) {
-          seen.long_travels.push_back(
-              {move.acceleration, static_cast<float>(move.length_mm()), move.line, layer.index()});
-        }
+      if (!IsNew(layer, link, move) || move.firmware) continue;
+      Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+      if (IsTooLong(move, longest)) {
+        seen.long_travels.push_back(
+            {move.acceleration, static_cast<float>(move.length_mm()), move.line, layer.index()});
       }
-      if (move.filament != 0 && move.kind != MoveKind::kWipe)
-        Note(seen.signatures, move.signature, move, layer.index());
-    }
-  }
-}
-
-// What layers may do at speeds of their own, as first layers do.
-bool HasLayerSpeed(const TraceMove& move) {
-  if (!move.in_print || move.firmware) return false;
-  return move.kind != MoveKind::kWipe;
-}
-
-// The speeds of one kind of move in a layer of the original.
-struct LayerFeeds {
-  absl::flat_hash_set<Micro> feeds;
-  uint32_t line = 0;  // of the first of them
-};
-
-using FeedsByKind = std::array<LayerFeeds, static_cast<size_t>(MoveKind::kCount)>;
-
-FeedsByKind FeedsOf(const LayerPair& layer) {
-  FeedsByKind were;
-  const TraceChunk& was = layer.was();
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
-      const TraceMove& move = was.moves[m];
-      if (!HasLayerSpeed(move)) continue;
-      LayerFeeds& of_kind = were[static_cast<size_t>(move.kind)];
-      if (of_kind.feeds.empty()) of_kind.line = move.line;
-      of_kind.feeds.insert(move.feed);
-    }
-  }
-  return were;
-}
-
-// New moves are as fast as those of their kind in the layer. If it has none of the kind, those of
-// the whole file count.
-void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
-  const FeedsByKind were = FeedsOf(layer);
-  const TraceChunk& is = layer.is();
-  const Tails tails(layer, false);
-  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    if (layer.Ended()) return;
-    for (uint32_t m = is.links[link].first_move + tails.At(link); m < is.links[link].end_move;
-         ++m) {
-      const TraceMove& move = is.moves[m];
-      const LayerFeeds& of_kind = were[static_cast<size_t>(move.kind)];
-      if (!HasLayerSpeed(move) || of_kind.feeds.empty() || of_kind.feeds.contains(move.feed) ||
-          !IsNew(layer, link, move)) {
-        continue;
-      }
-      findings.breaks.push_back(
-          {VerifyRule::kSpeeds, of_kind.line, move.line, layer.index(),
-           absl::StrFormat("%s at F%g, as none of this layer in the original",
-                           MoveKindName(move.kind), static_cast<double>(move.feed) * 1e-6)});
-      return;
     }
   }
 }
@@ -242,7 +128,6 @@ void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   ObserveWas(layer, Tails(layer, true), findings.was);
   ObserveIs(layer, Tails(layer, false), findings.is);
-  CheckLayerFeeds(layer, findings);
 }
 
 // After the last path there are also moves of the end script, which are no example for the print.
@@ -250,25 +135,16 @@ void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
   const TraceLink& last_was = was.links.back();
-  absl::flat_hash_set<uint64_t> feeds;
   absl::flat_hash_set<uint64_t> accelerations;
-  const auto key = [](const TraceMove& move, uint64_t value) { return Mix(KindOf(move), value); };
+  const auto key = [](const TraceMove& move) { return Mix(KindOf(move), move.acceleration); };
   for (uint32_t m = last_was.first_move; m < last_was.end_move; ++m) {
-    const TraceMove& move = was.moves[m];
-    feeds.insert(key(move, static_cast<uint64_t>(move.feed)));
-    accelerations.insert(key(move, move.acceleration));
+    accelerations.insert(key(was.moves[m]));
   }
   for (uint32_t m = is.links.back().first_move; m < is.links.back().end_move; ++m) {
     const TraceMove& move = is.moves[m];
     if (move.firmware || layer.IsKnown(move)) continue;
-    const size_t kind = KindOf(move);
-    const auto feed = static_cast<uint64_t>(move.feed);
-    if (!feeds.contains(key(move, feed))) {
-      Note(findings.is.feeds[kind], feed, move, layer.index());
-    }
-    if (!accelerations.contains(key(move, move.acceleration))) {
-      Note(findings.is.accelerations[kind], move.acceleration, move, layer.index());
-    }
+    if (accelerations.contains(key(move))) continue;
+    Note(findings.is.accelerations[KindOf(move)], move.acceleration, move, layer.index());
   }
 }
 
@@ -308,57 +184,19 @@ void CompareLengths(const Observations& was, const Observations& is, std::vector
   }
 }
 
-// What drips out of the nozzle on a tail depends on how long that takes.
-void CompareTails(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  for (const auto& [feed, seen] : is.tail_feeds) {
-    const uint64_t key = feed;
-    if (was.tail_feeds.contains(key) ||
-        std::any_of(was.feeds.begin(), was.feeds.end(),
-                    [key](const auto& of_kind) { return of_kind.contains(key); })) {
-      continue;
-    }
-    AddAt(seen,
-          {VerifyRule::kSpeeds, 0, 0, -1,
-           absl::StrFormat("continues along a path at F%g, as nothing in the original",
-                           static_cast<double>(static_cast<Micro>(feed)) * 1e-6)},
-          breaks);
-  }
-}
-
 }  // namespace
 
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareLengths(was, is, breaks);
-  CompareTails(was, is, breaks);
-  for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
-    // Slicers treat retracted and unretracted travel alike: for a kind that the original does not
-    // have, the other one counts.
-    size_t like = kind;
-    constexpr auto kTravel = static_cast<size_t>(MoveKind::kTravel);
-    if (was.feeds[kind].empty() && kind == kOpenTravel) like = kTravel;
-    if (was.feeds[kind].empty() && kind == kTravel) like = kOpenTravel;
-    for (const auto& [feed, seen] : is.feeds[kind]) {
-      if (was.feeds[like].contains(feed)) continue;
-      AddAt(seen,
-            {VerifyRule::kSpeeds, FirstLineOf(was.feeds[like]), 0, -1,
-             absl::StrFormat("%s at F%g, as none in the original", KindName(kind),
-                             static_cast<double>(static_cast<Micro>(feed)) * 1e-6)},
-            breaks);
-    }
+  for (size_t kind = 0; kind < was.accelerations.size(); ++kind) {
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
       if (IsKnownAcceleration(was, kind, acceleration)) continue;
       AddAt(seen,
-            {VerifyRule::kSpeeds, FirstLineOf(was.accelerations[like]), 0, -1,
+            {VerifyRule::kSpeeds, FirstLineOf(was.accelerations[kind]), 0, -1,
              absl::StrFormat("%s with an acceleration that none in the original has",
                              KindName(kind))},
             breaks);
     }
-  }
-}
-
-void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen) {
-  for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
-    seen.script_signatures.insert(was.moves[m].signature);
   }
 }
 

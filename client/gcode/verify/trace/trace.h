@@ -71,7 +71,6 @@ std::string_view MoveKindName(MoveKind kind);
 
 struct TraceMove {
   uint64_t identity = 0;      // from, to, filament, speed, acceleration
-  uint64_t signature = 0;     // of the line without its coordinates
   uint64_t acceleration = 0;  // VerifyMachine::AccelerationDigest
   uint64_t tool = 0;
   Point from;

@@ -92,12 +92,6 @@ uint64_t SpiralOf(const Motion& motion, double unit) {
   return Mix(digest, um(motion.from[1], motion.center_y));
 }
 
-uint64_t SignatureOf(const Motion& motion) {
-  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), motion.words);
-  digest = Mix(digest, static_cast<uint64_t>(motion.filament));
-  return Mix(digest, (motion.words & Bit('F')) != 0 ? static_cast<uint64_t>(motion.feed) : 0);
-}
-
 // Moves what lies in section `end` and behind it from `from` to `to`.
 template <typename Event>
 void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
@@ -303,7 +297,6 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   }
   move.acceleration = machine.AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
-  move.signature = SignatureOf(motion);
   move.tool = machine.tool();
   move.from = {static_cast<double>(motion.from[0]) * unit,
                static_cast<double>(motion.from[1]) * unit};

@@ -299,7 +299,7 @@ DEFECTS = (
     ("way along an arc", "bounds", way_on_arc, "free"),
     ("retraction 0.2 mm late", "kept_travel", pulled_late, "free"),
     ("poke of 0.3 mm back along the path", "kept_travel", poke, "free"),
-    ("lift before the retraction", "step_order", lifted_early, "free"),
+    ("lift before the retraction", "made_of_parts", lifted_early, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
     ("lift while leading away", "lifts", lift_with_way, "free"),
     ("down while leading there", "lifts", down_with_way, "free"),

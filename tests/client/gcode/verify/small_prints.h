@@ -16,7 +16,7 @@ using Policy = VerifyPermissions::Policy;
 
 // All rules but those by which most of what a test changes would be a break in any case.
 inline constexpr uint32_t kRulesOfTheirOwn =
-    ~(RuleBit(VerifyRule::kKeptTravels) | RuleBit(VerifyRule::kStepOrder) |
+    ~(RuleBit(VerifyRule::kKeptTravels) | RuleBit(VerifyRule::kMadeOfParts) |
       RuleBit(VerifyRule::kRest));
 
 // "lifts" or "order seam": those of `rules` that are broken. Each break names a line of both

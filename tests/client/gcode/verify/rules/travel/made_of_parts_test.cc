@@ -1,4 +1,4 @@
-// In which order travel takes its steps: client/gcode/verify/rules/travel/step_order.
+// In which order travel takes its steps: client/gcode/verify/rules/travel/made_of_parts.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
 
-constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kStepOrder);
+constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kMadeOfParts);
 
 std::string Ordered(const std::string& original, const std::string& optimised) {
   return Broken(original, optimised, {}, kRules);
@@ -33,17 +33,17 @@ std::string Low(const std::string& to, const std::string& y) {
 
 const std::string kLow = Low("X0 Y0", "Y0") + Low("X0 Y5", "Y5") + Low("X0 Y9", "Y9");
 
-TEST(VerifyStepOrder, ThatOfTheOriginal) {
+TEST(VerifyMadeOfParts, ThatOfTheOriginal) {
   const std::string a = kHead + kLow;
   const std::string pull = "G1 E-1 F2100\n";
   const std::string rise = "G1 Z.21 F9000\n";
   const std::string end = "G1 Z.2\nG1 E1 F2100\n";
   const std::string last = "G1 X0 Y9 F9000\n";
   EXPECT_EQ(Ordered(a, a), "");
-  EXPECT_EQ(Ordered(a, With(a, pull + rise + last, rise + pull + last)), "step_order");
-  EXPECT_EQ(Ordered(a, With(a, last + end, last + "G1 E1 F2100\nG1 Z.2 F9000\n")), "step_order");
+  EXPECT_EQ(Ordered(a, With(a, pull + rise + last, rise + pull + last)), "made_of_parts");
+  EXPECT_EQ(Ordered(a, With(a, last + end, last + "G1 E1 F2100\nG1 Z.2 F9000\n")), "made_of_parts");
   EXPECT_THAT(MessageOf(a, With(a, pull + rise + last, rise + pull + last)),
-              HasSubstr("an order that no travel of the original has: up, retraction, travel"));
+              HasSubstr("leaves by move up, retraction; no such travel of the original does so"));
   // Either order, if the original has both.
   const std::string both = With(a, pull + rise + last, rise + pull + last);
   const std::string turned = kHead + Low("X0 Y0", "Y0") +
@@ -53,23 +53,23 @@ TEST(VerifyStepOrder, ThatOfTheOriginal) {
 }
 
 // Which steps lead to a layer depends on where its first path is, but none comes too early.
-TEST(VerifyStepOrder, NothingComesEarlyToALayer) {
+TEST(VerifyMadeOfParts, NothingComesEarlyToALayer) {
   const std::string to = "G1 E-1 F2100\n;LAYER_CHANGE\nG1 Z.4 F9000\nG1 X0 Y5\nG1 E1 F2100\n";
   const std::string first = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y5 E.3\n";
   const std::string a = kHead + kTwo + to + first;
   EXPECT_EQ(Ordered(a, a), "");
   const std::string rises = ";LAYER_CHANGE\nG1 Z.4 F9000\nG1 E-1 F2100\nG1 X0 Y5 F9000\n";
-  EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "step_order");
+  EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "made_of_parts");
 }
 
-TEST(VerifyStepOrder, FilamentMovesAtTheHeightOfWhatIsPrinted) {
+TEST(VerifyMadeOfParts, FilamentMovesAtTheHeightOfWhatIsPrinted) {
   const std::string travel = Lifted("X10 Y30");
   const std::string above =
       With(With(travel, "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n");
   const std::string late =
       With(With(travel, "G1 E-1 F2100\n", ""), "G1 Z.6 F9000\n", "G1 Z.6 F9000\nG1 E-1 F2100\n");
-  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, above)), "step_order");
-  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, late)), "step_order");
+  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, above)), "made_of_parts");
+  EXPECT_EQ(Ordered(kHead + kLifted, kHead + With(kLifted, travel, late)), "made_of_parts");
   // A slicer may do so.
   std::string all = kLifted;
   for (const char* y : {"X10 Y10", "X10 Y20", "X10 Y30"}) {
@@ -83,17 +83,17 @@ TEST(VerifyStepOrder, FilamentMovesAtTheHeightOfWhatIsPrinted) {
   EXPECT_EQ(Ordered(kHead + all, kHead + other), "");
 }
 
-TEST(VerifyStepOrder, PrimesNotBelowTheLayer) {
+TEST(VerifyMadeOfParts, PrimesNotBelowTheLayer) {
   const std::string rise = "G1 Z.4 F9000\n";
   const std::string prime = "G1 E1 F2100\n";
   const std::string line = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n";
   const std::string travel = kHead + kTwo + "G1 E-1 F2100\n;LAYER_CHANGE\nG1 X0 Y0 F9000\n";
   EXPECT_EQ(Ordered(travel + rise + prime + line, travel + rise + prime + line), "");
-  EXPECT_EQ(Ordered(travel + rise + prime + line, travel + prime + rise + line), "step_order");
+  EXPECT_EQ(Ordered(travel + rise + prime + line, travel + prime + rise + line), "made_of_parts");
   EXPECT_EQ(Ordered(travel + prime + rise + line, travel + prime + rise + line), "");
 }
 
-TEST(VerifyStepOrder, WhatWaitsStillDoes) {
+TEST(VerifyMadeOfParts, WhatWaitsStillDoes) {
   const auto line = [](const std::string& from, const std::string& to, const std::string& waits) {
     return "G1 E-1 F2100\n" + waits + "G1 " + from + " F9000\nG1 E1 F2100\n" +
            ";TYPE:Internal infill\nG1 F1800\nG1 " + to + " E.3\n";
@@ -105,7 +105,7 @@ TEST(VerifyStepOrder, WhatWaitsStillDoes) {
            line("X0 Y5", "X9 Y5", waits);
   };
   EXPECT_EQ(Broken(two(false, wait), two(true, wait), {}, ~0u), "");
-  EXPECT_EQ(Ordered(two(false, wait), two(true, "")), "step_order");
+  EXPECT_EQ(Ordered(two(false, wait), two(true, "")), "made_of_parts");
   EXPECT_NE(Broken(two(false, wait), two(true, "G4 P500\n"), {}, ~0u), "");
   // Elsewhere waiting has reasons of its own.
   const std::string apart = "G1 F1800\nG4 P50\n";

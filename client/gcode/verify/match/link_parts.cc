@@ -1,0 +1,237 @@
+#include "client/gcode/verify/match/link_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/slacks.h"
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr int64_t kSlackUm = 2;
+
+// So many parts that differ in amounts and heights alone are remembered; no slicer has as many.
+constexpr size_t kMostAlike = 256;
+
+int64_t Um(double mm) { return std::llround(mm * 1000); }
+
+// A feed rate alone moves nothing, nor does rounding.
+bool MovesNothing(const TraceMove& move) {
+  return !move.firmware && move.filament == 0 && move.kind != MoveKind::kDwell &&
+         std::abs(move.z_from_mm - move.z_to_mm) <= kOneHeightMm && move.length_mm() < kLeastMoveMm;
+}
+
+bool IsAtTheSameHeight(const LinkStep& a, const LinkStep& b) {
+  return std::abs(a.above_um - b.above_um) <= kSlackUm ||
+         std::abs(a.behind_um - b.behind_um) <= kSlackUm;
+}
+
+bool IsLike(const LinkStep& known, const LinkStep& step) {
+  return IsAtTheSameHeight(known, step) &&
+         std::abs(known.filament - step.filament) <= VerifyMachine::kSlack &&
+         std::abs(known.pulled - step.pulled) <= VerifyMachine::kSlack &&
+         step.length_mm <= known.length_mm + kSamePointMm;
+}
+
+bool IsSame(const LinkStep& known, const LinkStep& step) {
+  return IsLike(known, step) && known.above_um == step.above_um &&
+         known.behind_um == step.behind_um;
+}
+
+uint64_t FormOf(const LinkPart& part) {
+  uint64_t digest = part.role;
+  for (const LinkStep& step : part.steps) digest = Mix(digest, static_cast<uint64_t>(step.kind));
+  return digest;
+}
+
+uint64_t KeyOf(const LinkPart& part) {
+  uint64_t digest = FormOf(part);
+  for (const LinkStep& step : part.steps) {
+    digest = Mix(Mix(digest, step.firmware ? 1 : 0), static_cast<uint64_t>(step.feed));
+    digest = Mix(Mix(digest, step.tool), step.spiral);
+  }
+  return digest;
+}
+
+template <typename Like>
+bool HasAny(const std::vector<LinkPart>& parts, const LinkPart& part, const Like& like) {
+  return std::any_of(parts.begin(), parts.end(), [&](const LinkPart& known) {
+    return std::equal(known.steps.begin(), known.steps.end(), part.steps.begin(), part.steps.end(),
+                      like);
+  });
+}
+
+}  // namespace
+
+LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
+                       const LayerPair* known_in)
+    : known_in_(known_in) {
+  const TraceLink& traced = chunk.links[link];
+  const bool last = link == chunk.paths.size();
+  const uint32_t fixed = last ? 0 : traced.fixed;
+  for (uint32_t m = traced.first_move + std::max(skipped, fixed); m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (last && move.z_from_mm != move.z_to_mm) break;
+    if (move.in_print && !MovesNothing(move)) moves_.push_back(&move);
+  }
+  if (moves_.empty()) return;
+  from_mm_ = moves_.front()->z_from_mm;
+  to_mm_ = last ? from_mm_ : chunk.paths[link].z_mm;
+  level_ = std::abs(from_mm_ - to_mm_) <= kOneHeightMm;
+  if (to_mm_ > from_mm_) DropRisesToLayer();
+}
+
+// The head may go up to a higher path at any time between a retraction and its prime; without
+// travel, above it too: how high, travel_heights.cc says.
+void LinkCutter::DropRisesToLayer() {
+  const auto pulls = [](const TraceMove* move) { return Retracts(*move); };
+  const auto primes = [](const TraceMove* move) { return move->kind == MoveKind::kPriming; };
+  const bool travels = std::any_of(moves_.begin(), moves_.end(), [](const TraceMove* move) {
+    return move->kind == MoveKind::kTravel;
+  });
+  std::vector<const TraceMove*> kept;
+  for (auto move = moves_.begin(); move != moves_.end(); ++move) {
+    const bool rises =
+        (*move)->kind == MoveKind::kUp && (!travels || (*move)->z_to_mm <= to_mm_ + kOneHeightMm);
+    const bool any_time = rises && std::none_of(move, moves_.end(), pulls) &&
+                          std::none_of(moves_.begin(), move, primes);
+    if (!any_time) kept.push_back(*move);
+  }
+  moves_ = std::move(kept);
+}
+
+bool LinkCutter::GoesOn(size_t i) const {
+  return i + 1 < moves_.size() && Travels(i) && Travels(i + 1) &&
+         moves_[i]->open == moves_[i + 1]->open;
+}
+
+std::vector<LinkPart> LinkCutter::Parts() const {
+  size_t longest = moves_.size();
+  for (size_t i = 0; i < moves_.size(); ++i) {
+    const bool longer =
+        longest == moves_.size() || moves_[i]->length_mm() > moves_[longest]->length_mm();
+    if (Travels(i) && longer) longest = i;
+  }
+  while (longest > 0 && GoesOn(longest - 1)) --longest;
+  return CutAt(longest);
+}
+
+std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
+  std::vector<std::vector<LinkPart>> cuts;
+  for (size_t i = 0; i < moves_.size(); ++i) {
+    if (Travels(i) && (i == 0 || !GoesOn(i - 1))) cuts.push_back(CutAt(i));
+  }
+  // Two paths that meet, one above the other.
+  const bool anywhere = cuts.empty() && !level_;
+  for (size_t i = 0; anywhere && i < moves_.size(); ++i) cuts.push_back(CutAt(i));
+  if (cuts.empty() || anywhere) cuts.push_back(CutAt(moves_.size()));
+  return cuts;
+}
+
+// At the travel that begins with move `first`, or right before it.
+std::vector<LinkPart> LinkCutter::CutAt(size_t first) const {
+  size_t leaves = 0;  // by short moves, before it retracts: their place is another rule
+  double mm = 0;
+  while (leaves < first && Travels(leaves) && moves_[leaves]->open) {
+    mm += moves_[leaves++]->length_mm();
+  }
+  if (mm > kLongestDepartureMm) leaves = 0;
+  size_t end = first;
+  if (first < moves_.size() && Travels(first)) {
+    while (GoesOn(end)) ++end;
+    ++end;
+  }
+  std::vector<LinkPart> parts;
+  AddSpeeds(0, leaves, parts);
+  AddSpeeds(first, end, parts);
+  AddPart(LinkPart::kDeparture, leaves, first, parts);
+  AddPart(LinkPart::kArrival, end, moves_.size(), parts);
+  return parts;
+}
+
+LinkStep LinkCutter::StepOf(size_t i) const {
+  const TraceMove& move = *moves_[i];
+  LinkStep step;
+  step.kind = move.kind;
+  step.firmware = move.firmware;
+  if (!move.firmware && move.kind != MoveKind::kWipe) step.feed = move.feed;
+  if (move.filament != 0) step.tool = move.tool;
+  step.spiral = move.kind == MoveKind::kUp ? move.spiral : 0;
+  step.filament = move.filament;
+  if (move.kind == MoveKind::kPriming) {
+    for (size_t k = 0; k < i; ++k) step.pulled -= moves_[k]->filament;
+  }
+  // To a higher path it may lead at any height up to that.
+  step.behind_um = Um(move.z_to_mm - to_mm_);
+  if (to_mm_ >= from_mm_) step.behind_um = std::max<int64_t>(step.behind_um, 0);
+  step.above_um = to_mm_ >= from_mm_ ? step.behind_um : Um(move.z_to_mm - from_mm_);
+  if (move.kind == MoveKind::kTravel && move.open) step.length_mm = move.length_mm();
+  return step;
+}
+
+void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& parts) const {
+  for (size_t i = begin; i < end; ++i) {
+    if (moves_[i]->firmware || IsKnown(i)) continue;
+    LinkStep step;
+    step.kind = moves_[i]->kind;
+    step.feed = moves_[i]->feed;
+    parts.push_back({LinkPart::kSpeed, {step}});
+  }
+}
+
+void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
+                         std::vector<LinkPart>& parts) const {
+  LinkPart part{role, {}};
+  for (size_t i = begin; i < end; ++i) {
+    const LinkStep step = StepOf(i);
+    LinkStep* last = part.steps.empty() ? nullptr : &part.steps.back();
+    const auto follows = [&](MoveKind before, MoveKind kind) {
+      return last != nullptr && last->kind == before && step.kind == kind;
+    };
+    const bool on = follows(MoveKind::kWipe, MoveKind::kWipe) ||
+                    follows(MoveKind::kWipe, MoveKind::kRetraction);
+    const bool up = follows(MoveKind::kUp, MoveKind::kUp) && last->spiral == step.spiral &&
+                    last->feed == step.feed;
+    const bool along = follows(MoveKind::kTravel, MoveKind::kTravel) && last->feed == step.feed;
+    // How fast a wipe is, and what it leaves to be retracted, depends on its path.
+    if (step.kind != MoveKind::kTravel) AddSpeeds(i, i + 1, parts);
+    if (on) {
+      last->filament += step.filament;
+    } else if (up || along) {
+      const double before_mm = last->length_mm;
+      *last = step;
+      last->length_mm += before_mm;
+    } else {
+      part.steps.push_back(step);
+    }
+  }
+  if (!part.steps.empty()) parts.push_back(std::move(part));
+}
+
+void KnownParts::Add(LinkPart part) {
+  forms_.insert(FormOf(part));
+  std::vector<LinkPart>& alike = parts_[KeyOf(part)];
+  if (alike.size() < kMostAlike && !HasAny(alike, part, IsSame)) alike.push_back(part);
+  bool spirals = false;
+  for (LinkStep& step : part.steps) spirals |= std::exchange(step.spiral, 0) != 0;
+  if (spirals) Add(std::move(part));
+}
+
+void KnownParts::Append(const KnownParts& other) {
+  for (const auto& [key, parts] : other.parts_) {
+    for (const LinkPart& part : parts) Add(part);
+  }
+}
+
+bool KnownParts::Has(const LinkPart& part) const {
+  const auto found = parts_.find(KeyOf(part));
+  return found != parts_.end() && HasAny(found->second, part, IsLike);
+}
+
+bool KnownParts::HasLike(const LinkPart& part) const { return forms_.contains(FormOf(part)); }
+
+}  // namespace traverse::gcode

@@ -1,0 +1,156 @@
+// New travel is made of parts that the original has: it leaves a path, travels and arrives as
+// travel of the layer does that takes such steps, or else as travel of the print does. So it
+// retracts, waits, rises, goes down and primes in an order, at speeds, to heights and by amounts
+// of the original's. Travel may be cut into parts in any way that makes it so.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/container/flat_hash_set.h"
+#include "absl/strings/str_cat.h"
+#include "client/gcode/verify/match/link_parts.h"
+#include "client/gcode/verify/match/tails.h"
+#include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+using Parts = std::vector<LinkPart>;
+
+// Of all moves of a link, one after the other.
+uint64_t DigestOf(const TraceChunk& chunk, uint32_t link) {
+  uint64_t digest = 0;
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    digest = Mix(digest, chunk.moves[m].identity);
+  }
+  return digest;
+}
+
+// The gap of a loop that begins elsewhere belongs to the loop, and is crossed as fast as that, or
+// what follows it, is printed.
+bool CrossesGap(const TraceChunk& chunk, uint32_t link) {
+  const TraceLink& traced = chunk.links[link];
+  if (link == 0 || traced.first_move == traced.end_move) return false;
+  const TraceMove& move = chunk.moves[traced.first_move];
+  const bool slow = move.feed == chunk.paths[link - 1].feed ||
+                    (link < chunk.paths.size() && move.feed == chunk.paths[link].feed);
+  return move.kind == MoveKind::kTravel && move.open && slow &&
+         move.length_mm() <= LoopGapMm(chunk, link - 1);
+}
+
+// What a layer of the original has.
+struct LayerParts {
+  KnownParts all;
+  KnownParts level;  // of travel within the layer
+  absl::flat_hash_set<Micro> tail_feeds;
+  absl::flat_hash_set<uint64_t> whole;  // DigestOf its links
+
+  // Layers may do the same at speeds and heights of their own, as first layers do.
+  bool HasOwn(const LinkPart& part, bool is_level) const {
+    if (part.role == LinkPart::kSpeed) {
+      return part.steps[0].kind == MoveKind::kTravel && all.HasLike(part) &&
+             !tail_feeds.contains(part.steps[0].feed);
+    }
+    const bool measured = std::any_of(part.steps.begin(), part.steps.end(),
+                                      [](const LinkStep& step) { return step.length_mm > 0; });
+    return is_level && !measured && level.HasLike(part);
+  }
+};
+
+// Which of the parts of a link the layer does not have: one list for each way to cut the link that
+// the layer allows. Of travel from the start script only the speeds count.
+std::vector<Parts> Missing(const LayerParts& had, const LinkCutter& link, bool from_script) {
+  std::vector<Parts> cuts;
+  for (Parts& parts : link.AllParts()) {
+    std::erase_if(parts, [&](const LinkPart& part) {
+      return had.all.Has(part) || (from_script && part.role != LinkPart::kSpeed);
+    });
+    const bool own = std::any_of(parts.begin(), parts.end(), [&](const LinkPart& part) {
+      return had.HasOwn(part, link.level());
+    });
+    if (!own) cuts.push_back(std::move(parts));
+  }
+  return cuts;
+}
+
+// For people.
+std::string NameOf(const LinkPart& part) {
+  std::string words;
+  for (const LinkStep& step : part.steps) {
+    absl::StrAppend(&words, words.empty() ? "" : ", ", std::string(MoveKindName(step.kind)));
+  }
+  constexpr const char* kRoles[] = {"leaves by", "goes at the speed of", "arrives by"};
+  return absl::StrCat(kRoles[part.role], " ", words);
+}
+
+void CheckLink(const LayerPair& layer, const LayerParts& had, const LinkCutter& cutter,
+               uint32_t link, Observations& seen) {
+  std::vector<Parts> missing =
+      Missing(had, cutter, layer.index() == 0 && link == layer.first_path_is());
+  const bool none =
+      std::any_of(missing.begin(), missing.end(), [](const Parts& parts) { return parts.empty(); });
+  if (none) return;
+  const uint32_t line = layer.is().moves[layer.is().links[link].first_move].line;
+  Parts own = cutter.Parts();
+  std::erase_if(own, [&had](const LinkPart& part) { return had.all.Has(part); });
+  const std::string what = own.empty() ? "" : NameOf(own[0]);
+  seen.new_links.push_back({std::move(missing), what, line, layer.index()});
+}
+
+}  // namespace
+
+void ObserveParts(const LayerPair& layer, LayerFindings& findings) {
+  LayerParts had;
+  const Tails was_tails(layer, true);
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
+    had.whole.insert(DigestOf(layer.was(), link));
+    const uint32_t first = layer.was().links[link].first_move;
+    for (uint32_t m = first; m < first + was_tails.At(link); ++m) {
+      had.tail_feeds.insert(layer.was().moves[m].feed);
+    }
+    const LinkCutter cutter(layer.was(), link, was_tails.At(link));
+    const bool level = cutter.level() && !layer.was().links[link].new_layer;
+    for (const LinkPart& part : cutter.Parts()) {
+      had.all.Add(part);
+      if (level) had.level.Add(part);
+    }
+  }
+  const Tails tails(layer, false);
+  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
+    // At unknown lines every step is that of the original there: scripted_travel.cc.
+    if (layer.is().links[link].scripted || had.whole.contains(DigestOf(layer.is(), link))) continue;
+    const uint32_t gap = CrossesGap(layer.is(), link) ? 1 : 0;
+    const LinkCutter cutter(layer.is(), link, std::max(tails.At(link), gap), &layer);
+    CheckLink(layer, had, cutter, link, findings.is);
+  }
+  findings.was.parts = std::move(had.all);
+}
+
+void ObserveLastParts(const LayerPair& layer, LayerFindings& findings) {
+  const auto was = static_cast<uint32_t>(layer.was().paths.size());
+  const auto is = static_cast<uint32_t>(layer.is().paths.size());
+  if (DigestOf(layer.was(), was) == DigestOf(layer.is(), is)) return;
+  LayerParts had;
+  for (const LinkPart& part : LinkCutter(layer.was(), was, 0).Parts()) had.all.Add(part);
+  const Tails tails(layer, false);
+  CheckLink(layer, had, LinkCutter(layer.is(), is, tails.At(is), &layer), is, findings.is);
+}
+
+void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  for (const NewLink& link : is.new_links) {
+    const auto known = [&was](const LinkPart& part) { return was.parts.Has(part); };
+    const bool fine = std::any_of(
+        link.missing.begin(), link.missing.end(),
+        [&](const Parts& parts) { return std::all_of(parts.begin(), parts.end(), known); });
+    if (fine) continue;
+    breaks.push_back({VerifyRule::kMadeOfParts, 0, link.line, link.layer,
+                      absl::StrCat(link.what, "; no such travel of the original does so")});
+  }
+}
+
+}  // namespace traverse::gcode
