@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -28,8 +29,8 @@ Progress::Style Progress::StyleFor(bool quiet) {
   return IsTerminal(stderr) ? Style::kBar : Style::kLines;
 }
 
-Progress::Progress(Style style, std::string label, uint64_t layers)
-    : style_(style), label_(std::move(label)), layers_(layers), began_(absl::Now()) {}
+Progress::Progress(Style style, std::string label, SearchWork work)
+    : style_(style), label_(std::move(label)), work_(std::move(work)), began_(absl::Now()) {}
 
 Progress::~Progress() {
   if (bar_drawn_) Print(stderr, kClearLine);
@@ -39,7 +40,7 @@ void Progress::Take(const v1::LayerResult& layer) { Take(layer, absl::Now() - be
 
 void Progress::Take(const v1::LayerResult& layer, absl::Duration elapsed) {
   ++done_;
-  done_work_ += WorkOf(layer.index());
+  done_work_ += work_.layers[layer.index()];
   if (done_ == 1) {
     first_seconds_ = absl::ToDoubleSeconds(elapsed);
     first_work_ = done_work_;
@@ -54,31 +55,26 @@ void Progress::Take(const v1::LayerResult& layer, absl::Duration elapsed) {
   bar_drawn_ = bar;
 }
 
-double Progress::WorkOf(uint64_t layer) const {
-  return layer < work_.layers.size() ? work_.layers[layer] : 1;
-}
-
-// Of this search, and of what follows; unset if too little is done to tell. All layers are searched
+// Of the search, and of what follows; unset if too little is done to tell. All layers are searched
 // side by side before the first one is done, so only what is done since then tells how fast the
 // others will be.
 std::optional<double> Progress::SecondsLeft(double elapsed_seconds) const {
-  double all = 0;
-  for (uint64_t layer = 0; layer < layers_; ++layer) all += WorkOf(layer);
+  const double all = std::accumulate(work_.layers.begin(), work_.layers.end(), 0.0);
   const double since = done_work_ - first_work_;
   if (since <= 0 || since < kTellingShare * all) return std::nullopt;
   const double left = (all - done_work_) * (elapsed_seconds - first_seconds_) / since;
-  return std::max(left, 0.0) +
-         (work_.seconds_before + elapsed_seconds + left) * work_.stages_behind +
+  return std::max(left, 0.0) + (elapsed_seconds + left) * work_.stages_behind +
          work_.seconds_behind;
 }
 
 std::string Progress::Text(absl::Duration elapsed, int width) const {
-  std::string out = absl::StrFormat("%d/%d layers", done_, layers_);
+  const uint64_t layers = work_.layers.size();
+  std::string out = absl::StrFormat("%d/%d layers", done_, layers);
   if (given_mm_ > 0) {
     absl::StrAppendFormat(&out, ", travel %s", report::Change(given_mm_, travel_mm_));
   }
   const std::optional<double> left = SecondsLeft(absl::ToDoubleSeconds(elapsed));
-  if (done_ > 0 && done_ < layers_ && left) {
+  if (done_ > 0 && done_ < layers && left) {
     absl::StrAppendFormat(&out, ", %s left", report::Duration(*left));
   }
   if (style_ != Style::kBar) return absl::StrFormat("%s: %s", label_, out);
@@ -88,7 +84,7 @@ std::string Progress::Text(absl::Duration elapsed, int width) const {
   std::string bar;
   if (cells >= 5) {
     const int full =
-        static_cast<int>(done_ * static_cast<uint64_t>(cells) / std::max<uint64_t>(1, layers_));
+        static_cast<int>(done_ * static_cast<uint64_t>(cells) / std::max<uint64_t>(1, layers));
     bar = absl::StrFormat("[%s%s] ", std::string(static_cast<size_t>(full), '#'),
                           std::string(static_cast<size_t>(cells - full), '-'));
   }

@@ -20,17 +20,14 @@ class Progress {
   // The style that suits standard error.
   static Style StyleFor(bool quiet);
 
-  // Starts showing a job of `layers` layers; `label` stands before the progress.
-  Progress(Style style, std::string label, uint64_t layers);
+  // Starts showing the search of a job; `label` stands before the progress.
+  Progress(Style style, std::string label, SearchWork work);
 
   // Removes the bar.
   ~Progress();
 
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-
-  // What the layers have to be weighed by; without it all are alike, and nothing follows.
-  void Expect(SearchWork work) { work_ = std::move(work); }
 
   // Counts one more layer, done now or after `elapsed`. Shows it at most ten times a second, as
   // lines every few seconds.
@@ -42,15 +39,13 @@ class Progress {
   std::string Text(absl::Duration elapsed, int width) const;
 
  private:
-  double WorkOf(uint64_t layer) const;
   std::optional<double> SecondsLeft(double elapsed_seconds) const;
 
   const Style style_;
   const std::string label_;
-  const uint64_t layers_;
+  const SearchWork work_;
   const absl::Time began_;
   absl::Duration shown_;  // after what time, last
-  SearchWork work_;
   uint64_t done_ = 0;
   double done_work_ = 0;
   double first_seconds_ = 0;  // until the first layer was done

@@ -120,7 +120,7 @@ Expected<OptimizedFile> Service::Rewrite(const InputJob& job, const StrategySpec
     if (fault->stage == FileStage::kWrite) return InputFault(fault->status);
     return Failure(fault->status, job.name);
   }
-  for (const report::JobRun& run : std::get<OptimizedFile>(made).runs) TellMissed(run);
+  TellMissed(std::get<OptimizedFile>(made).run);
   return std::get<OptimizedFile>(std::move(made));
 }
 
@@ -139,11 +139,9 @@ SearchOptions Service::SearchOptionsFor(const StrategySpec* strategy, const JobF
     return stand_in_client_.get();
   };
   const std::string label = strategy != nullptr ? strategy->label : "optimize";
-  options.progress.on_search = [&shown, label, quiet](size_t layers) {
-    shown.reset();
-    shown.emplace(Progress::StyleFor(quiet), label, layers);
+  options.progress.on_search = [&shown, label, quiet](const SearchWork& work) {
+    shown.emplace(Progress::StyleFor(quiet), label, work);
   };
-  options.progress.on_work = [&shown](SearchWork work) { shown->Expect(std::move(work)); };
   options.progress.on_layer = [&shown](const v1::LayerResult& layer) { shown->Take(layer); };
   return options;
 }

@@ -306,8 +306,7 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
   const auto take = [&](size_t i) {
     if (!counted.empty() && !counted[i]) return;
     const gcode::Layer& layer = file.layers[i];
-    const gcode::LayerPlan plan =
-        gcode::MakeLayerPlan(file, layer, policy, gcode::Latitude::kFull, allow);
+    const gcode::LayerPlan plan = gcode::MakeLayerPlan(file, layer, policy, allow);
     of_layer[i] =
         gcode::LayerTally(file, layer, plan.freedom, plan.outlines, fans_are_free).Take(objects);
   };

@@ -52,21 +52,9 @@ constexpr double kNeverMm = 1e7;
 // The service knows no longer moves.
 constexpr double kMostKnownSeconds = 1e7;
 
-double CrossingSeconds(Crossings crossings) {
-  switch (crossings) {
-    case Crossings::kKeep:
-      return kKeepCrossingSeconds;
-    case Crossings::kFewer:
-      return kFewerCrossingSeconds;
-    case Crossings::kAny:
-      break;
-  }
-  return 0;
-}
-
 // The rules by which travel is written (travel_rules.h), so that the search knows the cost of each.
 void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost& time) {
-  time.set_crossing_seconds(CrossingSeconds(crossings));
+  time.set_crossing_seconds(crossings == Crossings::kAny ? 0 : kKeepCrossingSeconds);
   time.set_wall_slack_mm(VisibleWalls::kEndSlackMm);
   if (habit.avoids_walls) time.set_wall_clearance_mm(Detours::kBesideMm);
   time.set_exposed_retraction_threshold_mm(std::min(habit.threshold_mm, kNeverMm));
@@ -80,16 +68,6 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
     const double longest = std::max(time.retraction_threshold_mm(), habit.hidden->longest_mm());
     time.set_retraction_threshold_mm(std::min(longest, kNeverMm));
   }
-}
-
-// Paths that the slicer wipes stay wiped, so travel after them always retracts: an order saves, or
-// costs, only the retractions after the other paths.
-double ShareWiped(const GcodeFile& file, const Allowance& allow) {
-  if (allow.wipes || allow.hidden_retractions) return 0;
-  const auto blocks = static_cast<uint32_t>(file.blocks.size());
-  size_t wiped = 0;
-  for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1u : 0u;
-  return static_cast<double>(wiped) / blocks;
 }
 
 // If retraction depends on length, it is sent as one of exposed paths, and all paths are exposed:
@@ -194,7 +172,7 @@ struct FileHabits {
 void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
                const GcodeOptions& options, InputJob& job, Census& census) {
   const Layer& layer = file.layers[index];
-  LayerPlan planned = MakeLayerPlan(file, layer, options.policy, Latitude::kFull, options.allow);
+  LayerPlan planned = MakeLayerPlan(file, layer, options.policy, options.allow);
   v1::Layer& filled = job.layers[index];
   filled.set_id(index + 1);
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
@@ -242,33 +220,25 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
 
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
-// saves less than a second of printing, or has saved less than twelve on the average: a layer is
-// searched some six times. What is done in any case is shared by the layers. Of what is found among
-// wiped paths less is had, for a travel move begins where the wipe ends, and a retraction more is
-// no less for those that are made anyway.
-void SetStrategy(const GcodeFile& file, const Allowance& allow, bool keeps_retractions,
-                 v1::Strategy& strategy) {
-  const auto paths = static_cast<double>(file.blocks.size());
+// saves less than two seconds of printing, or has saved less than 24 on the average, for of that
+// about half is also found when the orders are improved as they are written. What is done in any
+// case is shared by the layers.
+void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
-  constexpr double kSecondsPerRound = 20e-6;
+  constexpr double kSecondsPerRound = 40e-6;
   constexpr double kFreeRounds = 2500;
   constexpr double kLeastFreeRounds = 50;
-  constexpr double kOfLittleUse = 4;
-  constexpr double kOfLittleUseAmongWiped = 4;
-  constexpr double kMostWiped = 0.5;
-  const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
+  const double effort =
+      std::clamp(kRounds / static_cast<double>(file.blocks.size()), 1.0, kMaxEffort);
+  const double free = kFreeRounds / static_cast<double>(file.layers.size());
   strategy.set_name("auto");
+  google::protobuf::Map<std::string, std::string>& options = *strategy.mutable_options();
   // A bound may take as long as the search, and the print gains nothing by it.
-  (*strategy.mutable_options())["bound"] = "false";
-  (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const double wiped = std::min(ShareWiped(file, allow), kMostWiped);
-  const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;
-  const double least = kSecondsPerRound * std::max(little, keeps_retractions ? kOfLittleUse : 1);
-  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", least);
-  const double free = kFreeRounds * (1 - wiped) / static_cast<double>(file.layers.size());
-  (*strategy.mutable_options())["gain_window"] =
-      absl::StrFormat("%.0f", std::max(free, kLeastFreeRounds));
+  options["bound"] = "false";
+  options["effort"] = absl::StrFormat("%.3g", effort);
+  options["least_gain_each"] = absl::StrFormat("%.3g", kSecondsPerRound);
+  options["gain_window"] = absl::StrFormat("%.0f", std::max(free, kLeastFreeRounds));
 }
 
 std::string Duration(double seconds) {
@@ -315,7 +285,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(*file, allow, habits.keeps_retractions, *job.options.mutable_strategy());
+  gcode::SetStrategy(*file, *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);
@@ -352,51 +322,6 @@ absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job, const GcodeOp
   }
   if (absl::Status status = job.gcode->limit.status(); !status.ok()) return status;
   return totals;
-}
-
-std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
-                                    absl::Span<const v1::LayerResult> found) {
-  std::vector<v1::Layer> layers(job.layers.size());
-  const gcode::Latitude latitude = gcode::LearnRetraction(*job.gcode).avoids_walls
-                                       ? gcode::Latitude::kIslands
-                                       : gcode::Latitude::kNarrow;
-  const bool keeps_retractions = gcode::KeepsRetractions(*job.gcode);
-  const double usual_retraction_seconds = job.options.cost().time().retraction_seconds();
-  const int threads = gcode::ThreadsFor(job.gcode->text.size());
-  gcode::ParallelFor(layers.size(), threads, [&](size_t i) {
-    const v1::Layer& layer = job.layers[i];
-    layers[i].set_id(layer.id());
-    if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
-    if (layers[i].cost().has_time()) {
-      v1::TimeCost& time = *layers[i].mutable_cost()->mutable_time();
-      // So there are orders with more and with fewer retractions to make one with as many of.
-      if (keeps_retractions) time.set_retraction_seconds(usual_retraction_seconds);
-      const bool crosses_more =
-          i >= found.size() || found[i].crossings() > found[i].crossings_given();
-      const bool too_long = options.policy == gcode::Policy::kSafe && i < found.size() &&
-                            time.wall_clearance_mm() == 0 &&
-                            found[i].travel().total_mm() > found[i].given().total_mm();
-      const bool dear = options.crossings == gcode::Crossings::kFewer
-                            ? !too_long
-                            : options.crossings == gcode::Crossings::kKeep && crosses_more;
-      if (dear) {
-        time.set_crossing_seconds(gcode::kDearCrossingSeconds);
-      } else if (too_long) {
-        time.set_retraction_seconds(0);
-        time.set_crossing_seconds(0);
-      }
-    }
-    *layers[i].mutable_walls() = layer.walls();
-    *layers[i].mutable_exposed_paths() = layer.exposed_paths();
-    *layers[i].mutable_retracted_paths() = layer.retracted_paths();
-    // If only length counts, the file's own travel costs nothing else.
-    const bool by_time = layers[i].cost().time().retraction_seconds() > 0;
-    if (by_time) *layers[i].mutable_known_moves() = layer.known_moves();
-    const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
-    *layers[i].mutable_plan() =
-        gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude, options.allow).plan;
-  });
-  return layers;
 }
 
 gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer) {

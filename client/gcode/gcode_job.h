@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/span.h"
 #include "client/gcode/gcode_options.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
@@ -34,13 +33,6 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
 // print; Cancelled or DeadlineExceeded once options.limit ends.
 absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job,
                                                     const GcodeOptions& options = {});
-
-// The layers of `job`, which comes from G-code, with plans of less freedom: a second way to search
-// for an order (layer_plan.h). If `found` has more crossings than given, or is missing, crossings
-// cost more, unless any are allowed. Otherwise, if it is longer, which Policy::kSafe forbids,
-// crossings and retractions cost nothing, except in files whose travel leads around walls.
-std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
-                                    absl::Span<const v1::LayerResult> found = {});
 
 // The order of layer `layer` of `file` in an answer of the service. REQUIRES: the answer was
 // checked against the layer of the job.

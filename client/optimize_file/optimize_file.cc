@@ -1,9 +1,7 @@
 #include "client/optimize_file/optimize_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -16,8 +14,9 @@
 namespace traverse {
 namespace {
 
-// Searches for what was asked for; the others are what Crossings::kKeep would ask for.
-constexpr size_t kOwnSearches = 2;
+// What makes the orders of a search better takes about so many times as long as the search, beside
+// SecondsBehind.
+constexpr double kBetterOrders = 1;
 
 // The strategy to search with. If the caller names the strategy that the file states, the options
 // that the file sets remain, except those that the caller sets.
@@ -33,103 +32,28 @@ v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
   return both;
 }
 
-// `auto` searches a file of G-code twice, the second time with less freedom.
-bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
-  const v1::Strategy& named = options.strategy ? *options.strategy : job.options.strategy();
-  return named.name() == "auto";
+// A caller who names a quicker strategy than `auto` does not want further searches.
+bool IsThorough(const InputJob& job, const SearchOptions& options) {
+  return StrategyFor(job, options).name() == "auto";
 }
 
-// How many times as long as the searches of a file up to search `number`, from 0, takes what
-// follows, beside SecondsBehind: the other searches, which are two or, with `fewer` crossings,
-// four, and what makes their orders better.
-double StagesBehind(size_t number, bool fewer) {
-  constexpr std::array<double, 4> kSearches = {1, 0.45, 1, 0.45};
-  constexpr double kBetterOrders = 1;  // beside all searches
-  const auto sum = [&](size_t count) {
-    return std::accumulate(kSearches.begin(), kSearches.begin() + count, 0.0);
-  };
-  const double all = sum(fewer ? 4 : 2);
-  const double begun = sum(number + 1);
-  return (all - begun + kBetterOrders * all) / begun;
-}
-
-// The layers of `job` again, with plans of less freedom.
-InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobResult& found) {
-  InputJob narrow;
-  narrow.name = job.name;
-  narrow.options = job.options;
-  narrow.layers = NarrowLayers(job, options, found.layers);
-  return narrow;
-}
-
-// The layers of `job` with crossings at the price of Crossings::kKeep. At a higher price, orders
-// that cross few walls make long detours, which Policy::kSafe forbids.
-InputJob JobWithUsualCrossings(const InputJob& job) {
-  InputJob usual;
-  usual.name = job.name;
-  usual.options = job.options;
-  usual.gcode = job.gcode;
-  usual.first_layer = job.first_layer;
-  (*usual.options.mutable_strategy()->mutable_options())["bound"] = "false";
-  usual.layers = job.layers;
-  for (v1::Layer& layer : usual.layers) {
-    if (!layer.cost().has_time()) continue;
-    layer.mutable_cost()->mutable_time()->set_crossing_seconds(gcode::kKeepCrossingSeconds);
-  }
-  return usual;
-}
-
-// Adds a search of `job` to those made, unless its time is over: then the earlier results have to
-// do.
-absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, SearchOptions search,
-                         bool fewer, bool may_be_late, std::vector<report::JobRun>& runs) {
-  if (absl::Now() >= search.finish_by) return absl::OkStatus();
-  for (const report::JobRun& run : runs) search.seconds_before += run.wall_seconds;
-  search.stages_behind = StagesBehind(runs.size(), fewer);
-  search.deadline = absl::InfiniteDuration();  // it is part of finish_by, and nothing may be late
-  absl::StatusOr<report::JobRun> run = Search(client, job, search);
-  const bool late = absl::IsDeadlineExceeded(run.status()) && may_be_late;
-  if (!run.ok()) return late ? absl::OkStatus() : run.status();
-  runs.push_back(*std::move(run));
-  return absl::OkStatus();
-}
-
-// Adds both searches that Crossings::kKeep would make.
-absl::Status SearchAsUsual(OptimizerClient& client, const InputJob& job,
-                           const OptimizeFileOptions& options, const SearchOptions& search,
-                           bool may_be_late, std::vector<report::JobRun>& runs) {
-  const InputJob usual = JobWithUsualCrossings(job);
-  const size_t before = runs.size();
-  absl::Status first = SearchAgain(client, usual, search, true, may_be_late, runs);
-  if (!first.ok() || runs.size() == before) return first;
-  GcodeOptions keep = options.gcode;
-  keep.crossings = gcode::Crossings::kKeep;
-  return SearchAgain(client, NarrowJob(usual, keep, runs.back().result), search, true, may_be_late,
-                     runs);
-}
-
-// The file of `job`, each layer rewritten by the best of `runs`. They answer the layers selected in
-// `job`; the others stay as they are.
-absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
-                                           const std::vector<report::JobRun>& runs,
-                                           const GcodeOptions& options, bool forecast_fast,
-                                           std::optional<gcode::PolishLimit> polish) {
-  std::vector<gcode::FileOrder> tries;
-  for (const report::JobRun& run : runs) {
-    gcode::FileOrder& orders = tries.emplace_back(job.gcode->layers.size());
-    for (size_t i = 0; i < run.result.layers.size(); ++i) {
-      const size_t layer = job.first_layer + i;
-      orders[layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
-    }
+// The file of `job`, its layers rewritten by `run`. It answers the layers selected in `job`; the
+// others stay as they are.
+absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::JobRun& run,
+                                          const OptimizeFileOptions& options, bool thorough,
+                                          absl::Time finish_by) {
+  std::vector<gcode::FileOrder> tries(1, gcode::FileOrder(job.gcode->layers.size()));
+  for (size_t i = 0; i < run.result.layers.size(); ++i) {
+    const size_t layer = job.first_layer + i;
+    tries[0][layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
   }
   RewriteOptions rewrite;
-  static_cast<gcode::Liberties&>(rewrite) = options;
+  static_cast<gcode::Liberties&>(rewrite) = options.gcode;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
-  rewrite.polish = std::move(polish);
-  rewrite.usual_tries = runs.size() > kOwnSearches ? runs.size() - kOwnSearches : 0;
+  if (thorough) rewrite.polish = {finish_by, options.cancel};
   rewrite.hidden = job.hidden;
-  rewrite.forecast_fast = forecast_fast;
+  rewrite.forecast_fast = options.forecast_fast && thorough;
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 
@@ -172,8 +96,8 @@ std::vector<double> WorkOf(const InputJob& job) {
   return work;
 }
 
-// What making orders better and writing them takes for the paths of `job`, though the searches may
-// have been done at once. Of 90 forecasts of nine files four are off by more than a factor of two.
+// What making orders better and writing them takes for the paths of `job`, though the search may
+// have been done at once.
 double SecondsBehind(const InputJob& job) {
   constexpr double kProcessorSecondsPerPath = 0.55e-3;
   double paths = 0;
@@ -223,10 +147,13 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
                                       const SearchOptions& options) {
   v1::JobOptions asked = job.options;
   *asked.mutable_strategy() = StrategyFor(job, options);
-  if (options.progress.on_search) options.progress.on_search(job.layers.size());
-  if (options.progress.on_work) {
-    options.progress.on_work({WorkOf(job), options.seconds_before, options.stages_behind,
-                              options.stages_behind > 0 ? SecondsBehind(job) : 0});
+  if (options.progress.on_search) {
+    SearchWork work{WorkOf(job)};
+    if (options.improves_orders) {
+      work.stages_behind = kBetterOrders;
+      work.seconds_behind = SecondsBehind(job);
+    }
+    options.progress.on_search(work);
   }
   const absl::Time began = absl::Now();
   CallOptions call;
@@ -263,28 +190,12 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
-  OptimizedFile made;
-  const bool twice = IsAskedTwice(job, options);
-  const bool fewer = options.gcode.crossings == gcode::Crossings::kFewer;
-  search.stages_behind = twice ? StagesBehind(0, fewer) : 0;
-  absl::StatusOr<report::JobRun> first = Search(client, job, search);
-  search.finish_by = std::min(search.finish_by, due);
-  if (!first.ok()) return SearchFault(first.status());
-  made.runs.push_back(*std::move(first));
-  if (twice) {
-    const bool may_be_late = search.finish_by != absl::InfiniteFuture();
-    absl::Status again = SearchAgain(client, NarrowJob(job, options.gcode, made.runs[0].result),
-                                     search, fewer, may_be_late, made.runs);
-    if (again.ok() && fewer) {
-      again = SearchAsUsual(client, job, options, search, may_be_late, made.runs);
-    }
-    if (!again.ok()) return SearchFault(again);
-  }
-  // A caller who names a quicker strategy does not want further searches.
-  std::optional<gcode::PolishLimit> polish;
-  if (twice) polish = {search.finish_by, options.cancel};
-  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(
-      job, made.runs, options.gcode, options.forecast_fast && twice, std::move(polish));
+  const bool thorough = IsThorough(job, options);
+  search.improves_orders = thorough;
+  absl::StatusOr<report::JobRun> run = Search(client, job, search);
+  if (!run.ok()) return SearchFault(run.status());
+  absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteByRun(job, *run, options, thorough, std::min(search.finish_by, due));
   const absl::Status in_time = job.gcode->limit.status();
   if (!in_time.ok()) return SearchFault(in_time);
   if (!rewrite.ok()) {
@@ -294,7 +205,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
                          DisplayName(job.name), std::string(rewrite.status().message())))};
   }
   if (options.cancel.stop_requested()) return SearchFault(absl::CancelledError("cancelled"));
-  made.rewrite = *std::move(rewrite);
+  OptimizedFile made{*std::move(run), *std::move(rewrite)};
   if (options.restate_times && made.rewrite.layers_changed > 0) {
     made.times = ScaleOf(made.rewrite);
     made.rewrite.text = gcode::RestateOptimised(made.rewrite.text, *made.times);

@@ -46,9 +46,8 @@ using FileResult = std::variant<T, FileFault>;
 // What a search has to do.
 struct SearchWork {
   std::vector<double> layers;  // [layer] its share, in paths and points
-  double seconds_before = 0;   // of the searches before this one
 
-  // What follows takes as long as this search and those before it, about so many times.
+  // What follows takes about so many times as long.
   double stages_behind = 0;
 
   // And this long beside, whatever searches take.
@@ -57,11 +56,8 @@ struct SearchWork {
 
 // Called while the service searches, on the calling thread. Each may be empty.
 struct SearchProgress {
-  // A search of `layers` layers begins. There may be two, one after the other.
-  std::function<void(size_t layers)> on_search = {};
-
-  // What it has to do, before it begins.
-  std::function<void(SearchWork work)> on_work = {};
+  // The search begins.
+  std::function<void(const SearchWork& work)> on_search = {};
 
   // One more layer is done.
   std::function<void(const v1::LayerResult& layer)> on_layer = {};
@@ -70,7 +66,7 @@ struct SearchProgress {
 struct SearchOptions {
   std::optional<v1::Strategy> strategy = std::nullopt;  // unset: the job's own
 
-  // Of all searches of a file together, and of what is done to improve their orders. The service
+  // Of the search of a file together with what is done to improve its orders. The service
   // ends its search early enough; but on a busy machine a late answer is better than none, so the
   // call waits for it kPatience longer.
   absl::Duration deadline = absl::InfiniteDuration();
@@ -81,8 +77,8 @@ struct SearchOptions {
   // job fails.
   std::function<absl::StatusOr<OptimizerClient*>()> stand_in = {};
 
-  // When the whole file must be ready: nothing is of use later. Searches end early enough that the
-  // file can still be written and verified with the best results so far.
+  // When the whole file must be ready: nothing is of use later. The search ends early enough that
+  // the file can still be written and verified with the best results so far.
   absl::Time finish_by = absl::InfiniteFuture();
 
   // How long reading the file took, on this machine and as busy as it is.
@@ -93,9 +89,8 @@ struct SearchOptions {
 
   SearchProgress progress = {};
 
-  // See SearchWork.
-  double seconds_before = 0;
-  double stages_behind = 0;
+  // What it finds will be improved: see SearchWork.
+  bool improves_orders = false;
 };
 
 // Runs one search of `job`. Errors are the service's.
@@ -114,15 +109,14 @@ struct OptimizeFileOptions : SearchOptions {
 
 // A rewritten file.
 struct OptimizedFile {
-  std::vector<report::JobRun> runs;  // of the searches; reports show the first one
-  GcodeRewrite rewrite;              // its text is the new file
+  report::JobRun run;                                    // of the search
+  GcodeRewrite rewrite;                                  // its text is the new file
   std::optional<gcode::TimeScale> times = std::nullopt;  // by which the file restates times
 };
 
-// Searches `job`, once or twice, and writes its file again with the best result for each
-// layer. The text has been verified against the file from which `job` was read.
-// DeadlineExceeded if `finish_by` leaves too little time for anything. REQUIRES: job.gcode is
-// not null.
+// Searches `job` and writes its file again with the best order found for each layer. The text has
+// been verified against the file from which `job` was read. DeadlineExceeded if `finish_by` leaves
+// too little time for anything. REQUIRES: job.gcode is not null.
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
                                        const OptimizeFileOptions& options);
 

@@ -54,7 +54,6 @@ void CheckJob(const std::shared_ptr<GcodeFile>& file, gcode::Policy policy) {
   const InputJob job = MakeGcodeJob(file, options);
   Check(job.layers.size() == file->layers.size(), "a plan for each layer");
   for (const v1::Layer& layer : job.layers) CheckPlan(layer.plan());
-  for (const v1::Layer& layer : NarrowLayers(job, options)) CheckPlan(layer.plan());
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ absl::StatusOr<GcodeTarget> TargetOf(const Flags& flags, const InputFile& input)
 
 // The results of the job: its runs and, if the file is written or drawn, the new text.
 struct Optimized {
-  std::vector<report::JobRun> runs;
+  report::JobRun run;
   std::optional<GcodeRewrite> rewrite;
   std::optional<gcode::TimeScale> times;
 };
@@ -74,27 +74,24 @@ struct Optimized {
 Expected<Optimized> Optimize(Service& service, const Request& request, const InputJob& job,
                              bool rewrite) {
   const StrategySpec* strategy = request.strategy.empty() ? nullptr : &request.strategy[0];
-  Optimized made;
   if (rewrite) {
     Expected<OptimizedFile> file =
         service.Rewrite(job, strategy, request.job, request.rewrite, request.quiet);
     if (Outcome* outcome = std::get_if<Outcome>(&file)) return *outcome;
-    auto& [runs, text, times] = std::get<OptimizedFile>(file);
-    made = {std::move(runs), std::move(text), times};
-    return made;
+    auto& [run, text, times] = std::get<OptimizedFile>(file);
+    return Optimized{std::move(run), std::move(text), times};
   }
   Expected<report::JobRun> run = service.Optimize(job, strategy, request.job, request.quiet);
   if (Outcome* outcome = std::get_if<Outcome>(&run)) return *outcome;
-  made.runs.push_back(std::get<report::JobRun>(std::move(run)));
-  return made;
+  return Optimized{std::get<report::JobRun>(std::move(run)), std::nullopt, std::nullopt};
 }
 
 // Draws and describes the results of the job. `rewrite` is null if it is not G-code.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
-                  const std::vector<report::JobRun>& runs, const GcodeRewrite* rewrite) {
-  const view::NamedRun named = {runs[0].result.summary.strategy(), &runs[0]};
+                  const report::JobRun& run, const GcodeRewrite* rewrite) {
+  const view::NamedRun named = {run.result.summary.strategy(), &run};
   if (rewrite != nullptr) {
-    const absl::StatusOr<view::Scene> scene = view::GcodeScene(job, named.label, runs, *rewrite);
+    const absl::StatusOr<view::Scene> scene = view::GcodeScene(job, named.label, run, *rewrite);
     if (!scene.ok()) return InputFault(scene.status());
     const absl::Status status = WriteViews(request.views, *scene);
     return status.ok() ? Done() : InputFault(status);
@@ -112,10 +109,10 @@ Outcome WriteDocuments(Service& service, const Request& request, const InputJob&
   const GcodeRewrite* rewrite = made.rewrite ? &*made.rewrite : nullptr;
   if (!request.json.empty()) {
     const absl::Status status =
-        WriteWholeFile(request.json, report::RoutesJson(job, made.runs[0], rewrite));
+        WriteWholeFile(request.json, report::RoutesJson(job, made.run, rewrite));
     if (!status.ok()) return InputFault(status);
   }
-  return request.views.any() ? ShowViews(service, request, job, made.runs, rewrite) : Done();
+  return request.views.any() ? ShowViews(service, request, job, made.run, rewrite) : Done();
 }
 
 std::string WarmStartLine(const WarmStart& warm, size_t layers) {
@@ -161,7 +158,7 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
   }
   if (warm) done.summary += WarmStartLine(*warm, job->layers.size());
   const gcode::Forecast* forecast = made.rewrite ? &made.rewrite->forecast : nullptr;
-  done.summary += report::OptimizeSummary(*job, made.runs[0], forecast);
+  done.summary += report::OptimizeSummary(*job, made.run, forecast);
   if (made.rewrite) done.summary += GcodeSummary(*made.rewrite);
   if (!written) return done;
   done.changed = made.rewrite->layers_changed > 0;

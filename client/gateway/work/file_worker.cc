@@ -41,8 +41,8 @@ void Add(const gcode::PrintTotals& totals, v1::PrintTotals& sum) {
 void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& label,
              v1::RewriteSummary& out) {
   const GcodeRewrite& rewrite = made.rewrite;
-  out.set_strategy(made.runs[0].result.summary.strategy());
-  out.set_seed(made.runs[0].seed);
+  out.set_strategy(made.run.result.summary.strategy());
+  out.set_seed(made.run.seed);
   out.set_layers(out.layers() + static_cast<uint32_t>(rewrite.layers));
   out.set_layers_changed(out.layers_changed() + static_cast<uint32_t>(rewrite.layers_changed));
   Add(rewrite.before, *out.mutable_given());
@@ -85,9 +85,9 @@ class ProgressTeller {
 
   SearchProgress ForSearch() {
     SearchProgress progress;
-    progress.on_search = [this](size_t layers) {
+    progress.on_search = [this](const SearchWork& work) {
       now_.Clear();
-      now_.set_layers(static_cast<uint32_t>(layers));
+      now_.set_layers(static_cast<uint32_t>(work.layers.size()));
       Stage(v1::RewriteProgress::STAGE_SEARCHING);
     };
     progress.on_layer = [this](const v1::LayerResult& layer) {
@@ -216,7 +216,7 @@ absl::Status FileWorker::RewritePart(Work& work, size_t index) {
   AddPart(*job, made, label, work.out.summary);
   if (request.report) {
     absl::StatusOr<view::Scene> scene =
-        view::GcodeScene(*job, work.out.summary.strategy(), made.runs, made.rewrite);
+        view::GcodeScene(*job, work.out.summary.strategy(), made.run, made.rewrite);
     if (!scene.ok()) return scene.status();
     absl::StatusOr<std::shared_ptr<const SpoolFile>> report =
         Spooled(spool_, request.caller,

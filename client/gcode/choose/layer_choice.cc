@@ -44,7 +44,6 @@ class LayerChooser::Impl {
         crossings_(choice.crossings),
         allow_(choice.allow),
         polish_(choice.polish),
-        usual_tries_(choice.usual_tries),
         threads_(choice.threads),
         habit_(HabitOfNewTravels(file, AllowedUnder(choice.policy, choice.allow), choice.threads,
                                  choice.hidden)),
@@ -56,7 +55,6 @@ class LayerChooser::Impl {
         filler_(file, habit_, travel_, donors_, room_, rests_),
         objects_(file),
         columns_(file.layers.size()) {
-    assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     rests_.SetGiven(TimedRow(columns_, false));
     const auto fill = [this](size_t i) { gcode::FillTravels(file_, columns_[i], columns_[i + 1]); };
@@ -234,23 +232,21 @@ class LayerChooser::Impl {
     filler_.Begin(layer, column);
     filler_.AddHidden(layer, column);
     MergeRules rules = RulesOf(layer);
-    AddMerged(layer, tries_, rules, column);
+    AddMerged(layer, rules, column);
     if (crossings_ == Crossings::kFewer) {
-      // What is made at that price is often too long. These are all that the usual one leads to.
+      // What is made at that price is often too long.
       rules.crossings = Crossings::kKeep;
-      const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
-      AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
+      AddMerged(layer, rules, column);
     }
     if (!objects_.any()) return;
     const LayerFreedom freedom = FreedomWithin(layer, rules);
     objects_.AddTo(layer, tries_, freedom, std::move(rules), filler_, column);
   }
 
-  // The orders that `tries` have for layer `layer`, merged by `rules`.
-  void AddMerged(size_t layer, absl::Span<const FileOrder> tries, const MergeRules& rules,
-                 LayerColumn& column) {
+  // The orders found for layer `layer`, merged by `rules`.
+  void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
     std::vector<LayerOrder> found;
-    for (const FileOrder& order : tries) {
+    for (const FileOrder& order : tries_) {
       const bool known = order[layer].empty() || order[layer] == column.choices[0].order;
       if (!known) found.push_back(order[layer]);
     }
@@ -395,7 +391,6 @@ class LayerChooser::Impl {
   const Crossings crossings_;
   const Allowance allow_;
   const std::optional<PolishLimit> polish_;
-  const size_t usual_tries_;
   const int threads_;
   const RetractionHabit habit_;
   const LinkDonors donors_;

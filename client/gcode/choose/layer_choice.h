@@ -67,10 +67,6 @@ struct ChoiceOptions : Liberties {
   // a search of the service. What ends it early ends nothing else.
   std::optional<PolishLimit> polish = {};
 
-  // Under Crossings::kFewer: so many tries, the last ones, are what kKeep would choose from; 0:
-  // all are. REQUIRES: there are as many.
-  size_t usual_tries = 0;
-
   // See HabitOfNewTravels.
   std::shared_ptr<const HiddenMoves> hidden = nullptr;
 };

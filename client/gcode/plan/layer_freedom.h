@@ -1,5 +1,4 @@
-// What may change in a layer, path by path and pair by pair: what its plan says as a tree, but for
-// the islands of Latitude::kIslands.
+// What may change in a layer, path by path and pair by pair: what its plan says as a tree.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_

@@ -24,15 +24,13 @@ bool StatesEachFan(const GcodeFile& file, const Layer& layer) {
 
 class LayerPlanner {
  public:
-  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
-               const Allowance& allow)
+  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, const Allowance& allow)
       : file_(file),
         policy_(policy),
-        latitude_(latitude),
         fan_order_(allow.fan_order),
         fans_of_paths_(StatesEachFan(file, layer)) {
     result_.outlines = OutlinesOf(file, layer);
-    paths_.emplace(file, layer, PathPermissions{policy, latitude, allow}, result_.outlines);
+    paths_.emplace(file, layer, policy, allow, result_.outlines);
   }
 
   LayerPlan Make();
@@ -51,13 +49,11 @@ class LayerPlanner {
   bool GoesWithBefore(size_t path) const;
   void AddLeaf(uint32_t parent, size_t path);
   void AddGroup(size_t begin, size_t end);
-  void AddGroupByIslands(uint32_t any, size_t begin, size_t end);
   using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;
   std::pair<Pairs::const_iterator, Pairs::const_iterator> PairsFrom(size_t begin, size_t end) const;
 
   const GcodeFile& file_;
   const Policy policy_;
-  const Latitude latitude_;
   const bool fan_order_;
   const bool fans_of_paths_;
   Contacts contacts_;
@@ -125,14 +121,9 @@ LayerPlanner::PairsFrom(size_t begin, size_t end) const {
   return {from(begin), from(end)};
 }
 
-// True if `path` and the one before it are walls side by side, one done right after the other, or
-// are lines of ironing.
+// True if `path` and the one before it are lines of ironing.
 bool LayerPlanner::GoesWithBefore(size_t path) const {
-  if (FeatureOf(path) == Feature::kIroning && FeatureOf(path - 1) == Feature::kIroning) return true;
-  return latitude_ == Latitude::kNarrow && IsWall(FeatureOf(path)) && IsWall(FeatureOf(path - 1)) &&
-         std::binary_search(
-             contacts_.ordered.begin(), contacts_.ordered.end(),
-             std::pair(static_cast<uint32_t>(path - 1), static_cast<uint32_t>(path)));
+  return FeatureOf(path) == Feature::kIroning && FeatureOf(path - 1) == Feature::kIroning;
 }
 
 void LayerPlanner::AddLeaf(uint32_t parent, size_t path) {
@@ -148,9 +139,6 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   }
   result_.movable += static_cast<int64_t>(end - begin);
   result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  if (latitude_ == Latitude::kIslands) {
-    return AddGroupByIslands(group, begin, end);
-  }
   uint32_t units = 0;
   for (size_t path = begin; path < end;) {
     size_t behind = path + 1;
@@ -181,38 +169,6 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   }
 }
 
-void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
-  // Islands in the order in which the slicer comes to them first.
-  std::vector<std::pair<uint32_t, uint32_t>> node_of;  // island, node
-  std::vector<uint32_t> count;
-  for (size_t path = begin; path < end; ++path) {
-    const uint32_t island = contacts_.island[path];
-    auto found = std::find_if(node_of.begin(), node_of.end(),
-                              [island](const auto& known) { return known.first == island; });
-    if (found == node_of.end()) {
-      const uint32_t node = AddNode(group);
-      result_.plan.mutable_nodes(static_cast<int>(node))->mutable_any_order();
-      found = node_of.insert(node_of.end(), {island, node});
-      count.push_back(0);
-    }
-    uint32_t& children = count[static_cast<size_t>(found - node_of.begin())];
-    position_[path] = children++;
-    AddLeaf(found->second, path);
-  }
-  const auto [first, last] = PairsFrom(begin, end);
-  for (auto pair = first; pair != last; ++pair) {
-    if (pair->second >= end) continue;
-    const uint32_t island = contacts_.island[pair->first];
-    const auto node = std::find_if(node_of.begin(), node_of.end(),
-                                   [island](const auto& known) { return known.first == island; });
-    v1::Precedence& before = *result_.plan.mutable_nodes(static_cast<int>(node->second))
-                                  ->mutable_any_order()
-                                  ->add_before();
-    before.set_first(position_[pair->first]);
-    before.set_second(position_[pair->second]);
-  }
-}
-
 LayerPlan LayerPlanner::Make() {
   position_.resize(size());
   LayerFreedom& freedom = result_.freedom;
@@ -239,14 +195,14 @@ LayerPlan LayerPlanner::Make() {
 
 }  // namespace
 
-LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
                         const Allowance& allow) {
-  return LayerPlanner(file, layer, policy, latitude, allow).Make();
+  return LayerPlanner(file, layer, policy, allow).Make();
 }
 
 LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
                        const Allowance& allow) {
-  return std::move(MakeLayerPlan(file, layer, policy, Latitude::kFull, allow).freedom);
+  return std::move(MakeLayerPlan(file, layer, policy, allow).freedom);
 }
 
 }  // namespace traverse::gcode

@@ -5,7 +5,6 @@
 //    |                                stated for each path) a change of the fan
 //    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
 //    +- path                          paths that touch; pinned paths stand alone
-//    +- any_order(islands of any_order(paths, before))      with the latitude kIslands
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_LAYER_PLAN_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_LAYER_PLAN_H_
@@ -32,7 +31,7 @@ struct LayerPlan {
 };
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
-                        Latitude latitude = Latitude::kFull, const Allowance& allow = {});
+                        const Allowance& allow = {});
 
 }  // namespace traverse::gcode
 

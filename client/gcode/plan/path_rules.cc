@@ -50,20 +50,18 @@ Kind KindOf(Feature feature) {
 
 }  // namespace
 
-PathRules::PathRules(const GcodeFile& file, const Layer& layer, const PathPermissions& permissions,
-                     const std::vector<Outline>& outlines)
+PathRules::PathRules(const GcodeFile& file, const Layer& layer, Policy policy,
+                     const Allowance& allow, const std::vector<Outline>& outlines)
     : file_(file),
       first_block_(layer.first_block),
-      policy_(permissions.policy),
-      latitude_(permissions.latitude),
-      allow_(permissions.allow),
+      policy_(policy),
+      allow_(allow),
       outlines_(outlines) {}
 
 bool PathRules::IsPinned(size_t path) const {
   const size_t block = first_block_ + path;
   const bool last = block + 1 == file_.blocks.size();
   const Feature feature = FeatureOf(path);
-  if (latitude_ != Latitude::kFull && (path == 0 || path + 1 == outlines_.size())) return true;
   return (BlockOf(path).flags & kBlockPinned) != 0 || (BlockOf(path).link & kLinkFixed) != 0 ||
          last || (file_.blocks[block + 1].link & (kLinkFixed | kLinkFixedFrom)) != 0 ||
          feature == Feature::kTower || feature == Feature::kCustom;

@@ -14,18 +14,11 @@
 
 namespace traverse::gcode {
 
-// What may change, and how far from the file's own order.
-struct PathPermissions {
-  Policy policy = Policy::kSafe;
-  Latitude latitude = Latitude::kFull;
-  Allowance allow = {};
-};
-
 // The paths of one layer, by their index in the layer.
 class PathRules {
  public:
   // `file` and `outlines`, which belong to the paths of `layer`, outlive the rules.
-  PathRules(const GcodeFile& file, const Layer& layer, const PathPermissions& permissions,
+  PathRules(const GcodeFile& file, const Layer& layer, Policy policy, const Allowance& allow,
             const std::vector<Outline>& outlines);
 
   PathRule RuleOf(size_t path) const;
@@ -47,7 +40,6 @@ class PathRules {
   const GcodeFile& file_;
   const size_t first_block_;
   const Policy policy_;
-  const Latitude latitude_;
   const Allowance allow_;
   const std::vector<Outline>& outlines_;
 };

@@ -64,11 +64,9 @@ enum class Crossings : uint8_t {
 };
 
 // Prices of a crossing in a search. The small one prefers orders that are as fast with fewer
-// crossings. The large one is for a second search of layers that cross more, so that there are
-// orders with hardly any crossings to choose from.
+// crossings.
 inline constexpr double kKeepCrossingSeconds = 0.03;
 inline constexpr double kFewerCrossingSeconds = 0.5;
-inline constexpr double kDearCrossingSeconds = 1;
 
 // "keep", "fewer" or "any"; nothing for other text.
 std::optional<Crossings> CrossingsOfName(std::string_view name);
@@ -83,18 +81,6 @@ struct Liberties {
   // No island rests shorter than so long, or than in the file (choose/island_rests.h). Except under
   // Policy::kFree none rests shorter than the file's least layer time either.
   double min_revisit_seconds = 0;
-};
-
-// How widely to search among the orders that a policy allows. The narrower the latitude, the closer
-// a search gets to its optimum.
-enum class Latitude : uint8_t {
-  kFull,
-  // The layer begins and ends with the same paths as in the file, so that nothing changes for the
-  // layers around it; walls that touch and are consecutive in the file stay together.
-  kNarrow,
-  // Begins and ends like kNarrow, and islands are printed one by one, so that travel crosses walls
-  // no more often than necessary.
-  kIslands,
 };
 
 }  // namespace traverse::gcode

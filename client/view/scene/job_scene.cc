@@ -141,8 +141,7 @@ Scene JobScene(const InputJob& job, const report::JobRun& given,
 }
 
 absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
-                                 const std::vector<report::JobRun>& runs,
-                                 const GcodeRewrite& rewrite) {
+                                 const report::JobRun& run, const GcodeRewrite& rewrite) {
   Scene scene = EmptyScene(job);
   scene.seconds_name = "print time";
   scene.moves_note = "The moves are those of both files, including wipes.";
@@ -171,7 +170,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   const gcode::HiddenCounts were = hidden(*job.gcode);
   given.total = FiguresOf(rewrite.before, were);
   given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size(), were);
-  RouteNotes after = NotesWithoutFigures({label, &runs[0]});
+  RouteNotes after = NotesWithoutFigures({label, &run});
   // The gap belongs to the routes found; the file may keep some layers' order and bend moves.
   after.gap.reset();
   const gcode::HiddenCounts are = hidden(*printed);

@@ -26,11 +26,10 @@ struct NamedRun {
 Scene JobScene(const InputJob& job, const report::JobRun& given, const std::vector<NamedRun>& runs);
 
 // G-code before and after: travel, retractions and time of both files, with the actual moves of the
-// head in each. `rewrite` is what RewriteGcode made of the job with the orders of `runs`, at least
-// one. The job must outlive the scene. Errors are those of reading the new text.
+// head in each. `rewrite` is what RewriteGcode made of the job with the orders of `run`. The job
+// must outlive the scene. Errors are those of reading the new text.
 absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
-                                 const std::vector<report::JobRun>& runs,
-                                 const GcodeRewrite& rewrite);
+                                 const report::JobRun& run, const GcodeRewrite& rewrite);
 
 }  // namespace traverse::view
 

@@ -104,21 +104,12 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   run.slicer = file.slicer.name.empty()
                    ? "unknown"
                    : file.slicer.name.substr(0, file.slicer.name.find_first_of(" _"));
-  std::vector<gcode::FileOrder> tries;
-  std::vector<v1::LayerResult> found;
-  for (const bool narrow : {false, true}) {
-    if (narrow && strategy != "auto") break;
-    const std::vector<v1::Layer> layers = narrow ? NarrowLayers(*job, options, found) : job->layers;
-    const absl::StatusOr<JobResult> result = client.Optimize(job->options, layers);
-    if (!result.ok()) return result.status();
-    if (!narrow) {
-      found = result->layers;
-      run.found_seconds = FoundSeconds(*job, found);
-    }
-    gcode::FileOrder& orders = tries.emplace_back();
-    for (size_t i = 0; i < result->layers.size(); ++i) {
-      orders.push_back(OrderOf(file, i, result->layers[i]));
-    }
+  const absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
+  if (!result.ok()) return result.status();
+  run.found_seconds = FoundSeconds(*job, result->layers);
+  std::vector<gcode::FileOrder> tries(1);
+  for (size_t i = 0; i < result->layers.size(); ++i) {
+    tries[0].push_back(OrderOf(file, i, result->layers[i]));
   }
   RewriteOptions rewriting;
   rewriting.policy = policy;

@@ -97,29 +97,18 @@ TEST_F(OptimizeFileTest, WritesAFileThatPrintsTheSameWithLessTravel) {
   EXPECT_EQ(VerifyGcode(BadOrder(3), "a", file->rewrite.text, "b"), absl::OkStatus());
 }
 
-TEST_F(OptimizeFileTest, TellsOfEachSearchAndItsLayers) {
+TEST_F(OptimizeFileTest, TellsOfTheSearchAndItsLayers) {
   const InputJob job = Job(3);
   std::vector<int> told;  // 100 for a search, 1 for a layer
   OptimizeFileOptions options;
-  options.progress.on_search = [&](size_t layers) {
-    told.push_back(static_cast<int>(layers) * 100);
+  options.progress.on_search = [&](const SearchWork& work) {
+    told.push_back(static_cast<int>(work.layers.size()) * 100);
   };
   options.progress.on_layer = [&](const v1::LayerResult&) { told.push_back(1); };
 
   OptimizeFile(client_, job, options);
 
-  EXPECT_THAT(told, ::testing::ElementsAre(300, 1, 1, 1, 300, 1, 1, 1));
-}
-
-TEST_F(OptimizeFileTest, ForFewerCrossingsItSearchesTwiceMoreAtTheUsualPrice) {
-  const InputJob job = Job(2);
-  OptimizeFileOptions options;
-  options.gcode.crossings = gcode::Crossings::kFewer;
-
-  const FileResult<OptimizedFile> made = OptimizeFile(client_, job, options);
-
-  ASSERT_TRUE(std::holds_alternative<OptimizedFile>(made));
-  EXPECT_EQ(std::get<OptimizedFile>(made).runs.size(), 4u);
+  EXPECT_THAT(told, ::testing::ElementsAre(300, 1, 1, 1));
 }
 
 TEST_F(OptimizeFileTest, FewerCrossingsAreWorthMoreThanKeepingThem) {
@@ -187,7 +176,7 @@ TEST_F(OptimizeFileTest, RetractsAsOftenWherePrimesAreShort) {
   EXPECT_LT(with_short.after.travel_mm, with_short.before.travel_mm);
 }
 
-TEST_F(OptimizeFileTest, ADeadlineOfTheSearchesIsOfAllOfThem) {
+TEST_F(OptimizeFileTest, UnderAnyDeadlineAFileIsWritten) {
   const InputJob job = Job(3);
   OptimizeFileOptions hurried;
   hurried.deadline = absl::Nanoseconds(1);
@@ -196,7 +185,7 @@ TEST_F(OptimizeFileTest, ADeadlineOfTheSearchesIsOfAllOfThem) {
 
   const auto* one = std::get_if<OptimizedFile>(&made);
   ASSERT_NE(one, nullptr) << std::get<FileFault>(made).status;
-  EXPECT_EQ(one->runs.size(), 1u);
+  EXPECT_EQ(one->run.result.layers.size(), 3u);
 }
 
 // However short the deadline is: what is found is not thrown away because it comes late.

@@ -132,18 +132,6 @@ TEST(Policy, IslandsMayBeMixedUnderAnyPolicy) {
   }
 }
 
-TEST(Policy, LessLatitudeDoesIslandsOneByOneWhereWallsAreNotToBeCrossed) {
-  Sheet sheet;
-  sheet.Line(kInfill, 0, 0, 9, 0).Line(kInfill, 30, 0, 39, 0).Line(kInfill, 0, .4, 9, .4);
-
-  const v1::Plan plan = sheet.Plan(Policy::kSafe, Latitude::kIslands).plan;
-
-  const v1::PlanNode& group = plan.nodes(static_cast<int>(plan.nodes(0).in_order().children(1)));
-  ASSERT_EQ(group.any_order().children_size(), 2);
-  const v1::PlanNode& first = plan.nodes(static_cast<int>(group.any_order().children(0)));
-  EXPECT_EQ(first.any_order().children_size(), 2);
-}
-
 TEST(Policy, DirectionIsFreeForInfillAndUnderFreeForOpenWalls) {
   Sheet sheet;
   sheet.Line(kInfill, 0, 0, 9, 0).Line(kInner, 0, 5, 9, 5);
@@ -226,42 +214,6 @@ TEST(Policy, TowersArePinned) {
   sheet.Line(";TYPE:Wipe tower", 0, 9, 9, 9).Line(kInfill, 0, 15, 9, 15);
 
   EXPECT_EQ(sheet.Plan(Policy::kFree).movable, 0);
-}
-
-TEST(Policy, WithLessLatitudeWallsThatTouchStayTogether) {
-  Sheet sheet;
-  sheet.Square(";TYPE:Perimeter", 0.4, 0.4, 9.2).Square(";TYPE:External perimeter", 0, 0, 10);
-  sheet.Square(";TYPE:Perimeter", 30.4, 0.4, 9.2).Square(";TYPE:External perimeter", 30, 0, 10);
-  sheet.Line(kInfill, 0.8, 5, 9, 5);
-
-  const LayerPlan planned = sheet.Plan(Policy::kSafe, Latitude::kNarrow);
-
-  const v1::AnyOrder& group = planned.plan.nodes(2).any_order();
-  ASSERT_EQ(group.children_size(), 3);
-  const auto leaves = [&](int child) {
-    std::vector<uint32_t> paths;
-    const auto node = static_cast<int>(group.children(child));
-    for (const uint32_t leaf : planned.plan.nodes(node).in_order().children()) {
-      paths.push_back(planned.plan.nodes(static_cast<int>(leaf)).path());
-    }
-    return paths;
-  };
-  EXPECT_THAT(leaves(0), ElementsAre(1, 2));
-  EXPECT_THAT(leaves(1), ElementsAre(3, 4));
-  ASSERT_EQ(group.before_size(), 1);
-  EXPECT_EQ(group.before(0).first(), 0u);
-  EXPECT_EQ(group.before(0).second(), 2u);
-}
-
-TEST(Policy, WithLessLatitudeALayerBeginsAndEndsAsInTheFile) {
-  const auto file = *ReadGcode(testing::kPrusaSample, "sample.gcode");
-
-  const v1::Plan plan =
-      MakeLayerPlan(*file, file->layers[0], Policy::kFree, Latitude::kNarrow).plan;
-
-  EXPECT_THAT(Groups(plan), ElementsAre(ElementsAre(0), ElementsAre(1), ElementsAre(2)));
-  EXPECT_THAT(plan.paths(0).contour().entries(), ElementsAre(0));
-  EXPECT_TRUE(plan.paths(2).open_path().one_way());
 }
 
 TEST(Policy, NamesAndNumbersAgree) {

@@ -42,16 +42,13 @@ class Sheet {
   }
 
   // The plan, with paths numbered from 0 without the first one.
-  LayerPlan Plan(Policy policy = Policy::kSafe, Latitude latitude = Latitude::kFull,
-                 const Allowance& allow = {}) {
+  LayerPlan Plan(Policy policy = Policy::kSafe, const Allowance& allow = {}) {
     Line(";TYPE:Custom", 950, 950, 960, 950);
     file_ = *ReadGcode(text_, "sheet.gcode");
     EXPECT_EQ(file_->layers.size(), 1u);
-    return MakeLayerPlan(*file_, file_->layers[0], policy, latitude, allow);
+    return MakeLayerPlan(*file_, file_->layers[0], policy, allow);
   }
-  LayerPlan PlanAllowing(const Allowance& allow) {
-    return Plan(Policy::kSafe, Latitude::kFull, allow);
-  }
+  LayerPlan PlanAllowing(const Allowance& allow) { return Plan(Policy::kSafe, allow); }
 
  private:
   void Move(const std::string& command, Point to, const std::string& rest) {

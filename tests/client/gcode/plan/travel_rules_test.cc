@@ -236,35 +236,6 @@ TEST(MakeGcodeJob, TellsTheSearchOfWallsAndRetractions) {
   EXPECT_LT(time.retraction_threshold_mm(), 100);
   EXPECT_EQ(time.wall_retraction_threshold_mm(), 0);
   EXPECT_EQ(time.crossing_seconds(), kKeepCrossingSeconds);
-  EXPECT_EQ(NarrowLayers(job, {})[0].walls_size(), 2);
-}
-
-TEST(MakeGcodeJob, LooksForFewerCrossingsWhereMoreWereFound) {
-  const InputJob job = MakeGcodeJob(TwoIslands(false).Read(), {});
-  const auto second = [&job](uint64_t crossings, double mm, Policy policy, Crossings allowed) {
-    v1::LayerResult found;
-    found.set_crossings_given(3);
-    found.set_crossings(crossings);
-    found.mutable_given()->set_total_mm(10);
-    found.mutable_travel()->set_total_mm(mm);
-    GcodeOptions options;
-    options.policy = policy;
-    options.crossings = allowed;
-    return NarrowLayers(job, options, {found})[0].cost().time();
-  };
-
-  for (const double mm : {9.0, 11.0}) {
-    EXPECT_EQ(second(4, mm, Policy::kSafe, Crossings::kKeep).crossing_seconds(),
-              kDearCrossingSeconds);
-  }
-  EXPECT_EQ(second(3, 9, Policy::kSafe, Crossings::kKeep).crossing_seconds(), kKeepCrossingSeconds);
-  EXPECT_EQ(second(3, 11, Policy::kFree, Crossings::kKeep).crossing_seconds(),
-            kKeepCrossingSeconds);
-  // What `safe` forbids for its length is looked for by length alone.
-  EXPECT_EQ(second(3, 11, Policy::kSafe, Crossings::kKeep).crossing_seconds(), 0);
-  EXPECT_EQ(second(3, 11, Policy::kSafe, Crossings::kKeep).retraction_seconds(), 0);
-  EXPECT_EQ(second(4, 9, Policy::kSafe, Crossings::kAny).crossing_seconds(),
-            job.layers[0].cost().time().crossing_seconds());
 }
 
 // Four lines, of which the first so many are wiped.
@@ -341,7 +312,6 @@ TEST(MakeGcodeJob, TellsTheSearchWhatTheTravelsOfTheFileTake) {
   EXPECT_FALSE(open.retracts());
   EXPECT_GT(retracted.seconds(), layer.cost().time().retraction_seconds());
   EXPECT_NEAR(open.seconds(), std::hypot(85, 2) / layer.cost().time().speed_mm_s(), 0.2);
-  EXPECT_EQ(NarrowLayers(job, {})[0].known_moves_size(), 14);
 }
 
 // CuraEngine's travel moves have bends of its own, longer than a travel move of ours would be.
@@ -368,17 +338,6 @@ TEST(MakeGcodeJob, TellsTheSearchOfBendsBehindAShortMove) {
   const v1::TimeCost& time = layer.cost().time();
   const double length = std::hypot(34, 15.5) + 36;
   EXPECT_GT(last.seconds(), StopToStopSeconds(length, time.speed_mm_s(), time.accel_mm_s2()));
-}
-
-// (6 s of computing went into sl_grille_comments_wipe, which saved 2.7 s of printing.)
-TEST(MakeGcodeJob, WhereWipesLeaveLittleToGainTheSearchEndsSooner) {
-  const auto number = [](int wiped, const char* option) {
-    return std::stod(WipedLines(wiped).options.strategy().options().at(option));
-  };
-
-  EXPECT_GT(number(1, "least_gain_each"), 1.5 * number(0, "least_gain_each"));
-  EXPECT_GT(number(3, "least_gain_each"), 1.25 * number(1, "least_gain_each"));
-  EXPECT_LT(number(3, "gain_window"), number(0, "gain_window"));
 }
 
 // (With one, sl_clusters13_brim took 3.7 s of computing in place of 0.9 s, and was as quick to

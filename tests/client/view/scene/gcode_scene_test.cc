@@ -70,7 +70,7 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
-  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs[0], *rewrite);
   ASSERT_TRUE(scene.ok()) << scene.status();
 
   ASSERT_EQ(scene->layers(), job->layers.size());
@@ -101,7 +101,7 @@ TEST(DrawnGcode, ArcsAreRound) {
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
-  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs[0], *rewrite);
   ASSERT_TRUE(scene.ok()) << scene.status();
   const DrawnLayer layer = scene->layer(0);
 
@@ -133,7 +133,7 @@ TEST(DrawnGcode, TravelIsRetractedOpenOrHidden) {
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, {}, rewriting);
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
-  const absl::StatusOr<Scene> scene = GcodeScene(*job, "fast", runs, *rewrite);
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "fast", runs[0], *rewrite);
   ASSERT_TRUE(scene.ok()) << scene.status();
 
   const auto forms = [&](size_t layer, size_t route) {
