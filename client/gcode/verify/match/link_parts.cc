@@ -82,21 +82,16 @@ LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
   from_mm_ = moves_.front()->z_from_mm;
   to_mm_ = last ? from_mm_ : chunk.paths[link].z_mm;
   level_ = std::abs(from_mm_ - to_mm_) <= kOneHeightMm;
-  if (to_mm_ > from_mm_) DropRisesToLayer();
+  if (to_mm_ > from_mm_) DropRisesToLayer(to_mm_ + kOneHeightMm);
 }
 
-// The head may go up to a higher path at any time between a retraction and its prime; without
-// travel, above it too: how high, travel_heights.cc says.
-void LinkCutter::DropRisesToLayer() {
+// The head may go up to a higher path at any time between a retraction and its prime.
+void LinkCutter::DropRisesToLayer(double top_mm) {
   const auto pulls = [](const TraceMove* move) { return Retracts(*move); };
   const auto primes = [](const TraceMove* move) { return move->kind == MoveKind::kPriming; };
-  const bool travels = std::any_of(moves_.begin(), moves_.end(), [](const TraceMove* move) {
-    return move->kind == MoveKind::kTravel;
-  });
   std::vector<const TraceMove*> kept;
   for (auto move = moves_.begin(); move != moves_.end(); ++move) {
-    const bool rises =
-        (*move)->kind == MoveKind::kUp && (!travels || (*move)->z_to_mm <= to_mm_ + kOneHeightMm);
+    const bool rises = (*move)->kind == MoveKind::kUp && (*move)->z_to_mm <= top_mm;
     const bool any_time = rises && std::none_of(move, moves_.end(), pulls) &&
                           std::none_of(moves_.begin(), move, primes);
     if (!any_time) kept.push_back(*move);
@@ -125,10 +120,15 @@ std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
   for (size_t i = 0; i < moves_.size(); ++i) {
     if (Travels(i) && (i == 0 || !GoesOn(i - 1))) cuts.push_back(CutAt(i));
   }
-  // Two paths that meet, one above the other.
-  const bool anywhere = cuts.empty() && !level_;
-  for (size_t i = 0; anywhere && i < moves_.size(); ++i) cuts.push_back(CutAt(i));
-  if (cuts.empty() || anywhere) cuts.push_back(CutAt(moves_.size()));
+  if (!cuts.empty()) return cuts;
+  cuts.push_back(CutAt(moves_.size()));
+  if (level_) return cuts;
+  // Two paths that meet, one above the other; how high the head goes there, travel_heights.cc says.
+  LinkCutter flat = *this;
+  flat.DropRisesToLayer(HUGE_VAL);
+  for (const LinkCutter& cutter : {*this, flat}) {
+    for (size_t i = 0; i <= cutter.moves_.size(); ++i) cuts.push_back(cutter.CutAt(i));
+  }
   return cuts;
 }
 

@@ -59,7 +59,7 @@ class LinkCutter {
  private:
   bool Travels(size_t i) const { return moves_[i]->kind == MoveKind::kTravel; }
   bool GoesOn(size_t i) const;
-  void DropRisesToLayer();
+  void DropRisesToLayer(double top_mm);
   std::vector<LinkPart> CutAt(size_t first) const;
   LinkStep StepOf(size_t i) const;
   void AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& parts) const;

@@ -62,6 +62,21 @@ TEST(VerifyMadeOfParts, NothingComesEarlyToALayer) {
   EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "made_of_parts");
 }
 
+// Between paths that meet, one above the other, there is no travel to cut the link at: it still
+// leaves and arrives as others do.
+TEST(VerifyMadeOfParts, NoTravelToALayerHasPartsToo) {
+  const std::string line = ";TYPE:Internal infill\nG1 F1800\n";
+  const std::string below = kHead + kTwo + "G1 E-1 F2100\nG1 X0 Y7 F9000\nG1 E1 F2100\n" + line +
+                            "G1 X9 Y7 E.3\n;LAYER_CHANGE\nG1 Z.4 F9000\n";
+  const std::string leaves = "G1 E-1 F2100\nG1 Z.6 F9000\n";
+  const std::string arrives = "G1 Z.4\nG1 E1 F2100\n";
+  const std::string a = below + leaves + "G1 X0 Y7\n" + arrives + line + "G1 X9 Y7 E.3\n";
+  const std::string met = line + "G1 X0 Y7 E.3\n";
+  EXPECT_EQ(Ordered(a, below + leaves + arrives + met), "");
+  EXPECT_EQ(Ordered(a, below + "G1 E-1 F2100\nG1 E1 F2100\n" + met), "");
+  EXPECT_EQ(Ordered(a, below + leaves + "G1 E1 F2100\nG1 Z.4 F9000\n" + met), "made_of_parts");
+}
+
 TEST(VerifyMadeOfParts, FilamentMovesAtTheHeightOfWhatIsPrinted) {
   const std::string travel = Lifted("X10 Y30");
   const std::string above =
