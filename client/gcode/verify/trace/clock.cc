@@ -62,11 +62,11 @@ double DwellSeconds(std::string_view line) {
 }  // namespace
 
 void Clock::Take(const VerifyLine& line, const VerifyMachine& machine) {
-  const Motion& motion = machine.motion();
   // Some dwells belong to the moves around them.
-  if (line.command == Mix('G', 4) || (line.moves && motion.number == 4)) {
+  if (line.command == Mix('G', 4) || (line.moves && machine.motion().number == 4)) {
     seconds_ += DwellSeconds(line.text);
   } else if (line.role == LineRole::kDeposit || line.moves) {
+    const Motion& motion = machine.motion();
     if (motion.feed > 0) seconds_ += PathLengthOf(motion) / static_cast<double>(motion.feed) * 60;
   }
 }
