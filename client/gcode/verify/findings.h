@@ -179,7 +179,7 @@ struct PrimeBalance {
 };
 
 // A link that the original does not have.
-struct NewLink {
+struct UnprovenLink {
   std::vector<std::vector<LinkPart>> missing;  // in its layer: one list for each way to cut it
   std::string what;                            // for people
   uint32_t line = 0;
@@ -263,7 +263,7 @@ struct Observations {
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1>
       accelerations;
   KnownParts parts;
-  std::vector<NewLink> new_links;  // with parts that their layer does not have
+  std::vector<UnprovenLink> new_links;  // with parts that their layer does not have
   PrimeBalance primes;
   LiftHeights heights;                  // of moves that state Z
   absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way

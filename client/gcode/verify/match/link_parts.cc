@@ -17,6 +17,9 @@ constexpr int64_t kSlackUm = 2;
 // So many parts that differ in amounts and heights alone are remembered; no slicer has as many.
 constexpr size_t kMostAlike = 256;
 
+// So many ways to cut a link are tried; slicers' links have fewer travel moves at a time.
+constexpr size_t kMostCuts = 32;
+
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
 // A feed rate alone moves nothing, nor does rounding.
@@ -25,32 +28,32 @@ bool MovesNothing(const TraceMove& move) {
          std::abs(move.z_from_mm - move.z_to_mm) <= kOneHeightMm && move.length_mm() < kLeastMoveMm;
 }
 
-bool IsAtTheSameHeight(const LinkStep& a, const LinkStep& b) {
+bool IsAtTheSameHeight(const PartStep& a, const PartStep& b) {
   return std::abs(a.above_um - b.above_um) <= kSlackUm ||
          std::abs(a.behind_um - b.behind_um) <= kSlackUm;
 }
 
-bool IsLike(const LinkStep& known, const LinkStep& step) {
+bool IsLike(const PartStep& known, const PartStep& step) {
   return IsAtTheSameHeight(known, step) &&
          std::abs(known.filament - step.filament) <= VerifyMachine::kSlack &&
          std::abs(known.pulled - step.pulled) <= VerifyMachine::kSlack &&
          step.length_mm <= known.length_mm + kSamePointMm;
 }
 
-bool IsSame(const LinkStep& known, const LinkStep& step) {
+bool IsSame(const PartStep& known, const PartStep& step) {
   return IsLike(known, step) && known.above_um == step.above_um &&
          known.behind_um == step.behind_um;
 }
 
 uint64_t FormOf(const LinkPart& part) {
   uint64_t digest = part.role;
-  for (const LinkStep& step : part.steps) digest = Mix(digest, static_cast<uint64_t>(step.kind));
+  for (const PartStep& step : part.steps) digest = Mix(digest, static_cast<uint64_t>(step.kind));
   return digest;
 }
 
 uint64_t KeyOf(const LinkPart& part) {
   uint64_t digest = FormOf(part);
-  for (const LinkStep& step : part.steps) {
+  for (const PartStep& step : part.steps) {
     digest = Mix(Mix(digest, step.firmware ? 1 : 0), static_cast<uint64_t>(step.feed));
     digest = Mix(Mix(digest, step.tool), step.spiral);
   }
@@ -87,16 +90,16 @@ LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
 
 // The head may go up to a higher path at any time between a retraction and its prime.
 void LinkCutter::DropRisesToLayer(double top_mm) {
-  const auto pulls = [](const TraceMove* move) { return Retracts(*move); };
   const auto primes = [](const TraceMove* move) { return move->kind == MoveKind::kPriming; };
-  std::vector<const TraceMove*> kept;
-  for (auto move = moves_.begin(); move != moves_.end(); ++move) {
-    const bool rises = (*move)->kind == MoveKind::kUp && (*move)->z_to_mm <= top_mm;
-    const bool any_time = rises && std::none_of(move, moves_.end(), pulls) &&
-                          std::none_of(moves_.begin(), move, primes);
-    if (!any_time) kept.push_back(*move);
-  }
-  moves_ = std::move(kept);
+  const auto pulls = [](const TraceMove* move) { return Retracts(*move); };
+  const auto first_prime = std::find_if(moves_.begin(), moves_.end(), primes);
+  const auto last_pull = std::find_if(moves_.rbegin(), moves_.rend(), pulls).base();
+  const auto end = std::max(last_pull, first_prime);
+  moves_.erase(std::remove_if(last_pull, end,
+                              [top_mm](const TraceMove* move) {
+                                return move->kind == MoveKind::kUp && move->z_to_mm <= top_mm;
+                              }),
+               end);
 }
 
 bool LinkCutter::GoesOn(size_t i) const {
@@ -117,12 +120,12 @@ std::vector<LinkPart> LinkCutter::Parts() const {
 
 std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
   std::vector<std::vector<LinkPart>> cuts;
-  for (size_t i = 0; i < moves_.size(); ++i) {
+  for (size_t i = 0; i < moves_.size() && cuts.size() < kMostCuts; ++i) {
     if (Travels(i) && (i == 0 || !GoesOn(i - 1))) cuts.push_back(CutAt(i));
   }
   if (!cuts.empty()) return cuts;
   cuts.push_back(CutAt(moves_.size()));
-  if (level_) return cuts;
+  if (level_ || moves_.size() > kMostCuts) return cuts;
   // Two paths that meet, one above the other; how high the head goes there, travel_heights.cc says.
   LinkCutter flat = *this;
   flat.DropRisesToLayer(HUGE_VAL);
@@ -153,18 +156,17 @@ std::vector<LinkPart> LinkCutter::CutAt(size_t first) const {
   return parts;
 }
 
-LinkStep LinkCutter::StepOf(size_t i) const {
+// With so much filament pulled back before it.
+PartStep LinkCutter::StepOf(size_t i, Micro pulled) const {
   const TraceMove& move = *moves_[i];
-  LinkStep step;
+  PartStep step;
   step.kind = move.kind;
   step.firmware = move.firmware;
   if (!move.firmware && move.kind != MoveKind::kWipe) step.feed = move.feed;
   if (move.filament != 0) step.tool = move.tool;
   step.spiral = move.kind == MoveKind::kUp ? move.spiral : 0;
   step.filament = move.filament;
-  if (move.kind == MoveKind::kPriming) {
-    for (size_t k = 0; k < i; ++k) step.pulled -= moves_[k]->filament;
-  }
+  if (move.kind == MoveKind::kPriming) step.pulled = pulled;
   // To a higher path it may lead at any height up to that.
   step.behind_um = Um(move.z_to_mm - to_mm_);
   if (to_mm_ >= from_mm_) step.behind_um = std::max<int64_t>(step.behind_um, 0);
@@ -176,7 +178,7 @@ LinkStep LinkCutter::StepOf(size_t i) const {
 void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& parts) const {
   for (size_t i = begin; i < end; ++i) {
     if (moves_[i]->firmware || IsKnown(i)) continue;
-    LinkStep step;
+    PartStep step;
     step.kind = moves_[i]->kind;
     step.feed = moves_[i]->feed;
     parts.push_back({LinkPart::kSpeed, {step}});
@@ -186,9 +188,12 @@ void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& part
 void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
                          std::vector<LinkPart>& parts) const {
   LinkPart part{role, {}};
+  Micro pulled = 0;
+  for (size_t i = 0; i < begin; ++i) pulled -= moves_[i]->filament;
   for (size_t i = begin; i < end; ++i) {
-    const LinkStep step = StepOf(i);
-    LinkStep* last = part.steps.empty() ? nullptr : &part.steps.back();
+    const PartStep step = StepOf(i, pulled);
+    pulled -= moves_[i]->filament;
+    PartStep* last = part.steps.empty() ? nullptr : &part.steps.back();
     const auto follows = [&](MoveKind before, MoveKind kind) {
       return last != nullptr && last->kind == before && step.kind == kind;
     };
@@ -217,7 +222,7 @@ void KnownParts::Add(LinkPart part) {
   std::vector<LinkPart>& alike = parts_[KeyOf(part)];
   if (alike.size() < kMostAlike && !HasAny(alike, part, IsSame)) alike.push_back(part);
   bool spirals = false;
-  for (LinkStep& step : part.steps) spirals |= std::exchange(step.spiral, 0) != 0;
+  for (PartStep& step : part.steps) spirals |= std::exchange(step.spiral, 0) != 0;
   if (spirals) Add(std::move(part));
 }
 

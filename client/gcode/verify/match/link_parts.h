@@ -20,7 +20,7 @@
 
 namespace traverse::gcode {
 
-struct LinkStep {
+struct PartStep {
   MoveKind kind = MoveKind::kTravel;
   bool firmware = false;
   Micro feed = 0;
@@ -36,7 +36,7 @@ struct LinkStep {
 struct LinkPart {
   enum Role : uint8_t { kDeparture, kSpeed, kArrival };
   Role role = kDeparture;
-  std::vector<LinkStep> steps;  // one of them tells a speed: of travel, or of wipes
+  std::vector<PartStep> steps;  // one of them tells a speed: of travel, or of wipes
 };
 
 // A link of `chunk`, as it is cut into parts.
@@ -53,7 +53,8 @@ class LinkCutter {
   // The link cut at its longest travel; at its end if it has none.
   std::vector<LinkPart> Parts() const;
 
-  // The link cut at each of its travel moves; anywhere if it has none.
+  // The link cut at each of its travel moves, the first 32 of many; anywhere if it has none, and is
+  // as short.
   std::vector<std::vector<LinkPart>> AllParts() const;
 
  private:
@@ -61,7 +62,7 @@ class LinkCutter {
   bool GoesOn(size_t i) const;
   void DropRisesToLayer(double top_mm);
   std::vector<LinkPart> CutAt(size_t first) const;
-  LinkStep StepOf(size_t i) const;
+  PartStep StepOf(size_t i, Micro pulled) const;
   void AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& parts) const;
   void AddPart(LinkPart::Role role, size_t begin, size_t end, std::vector<LinkPart>& parts) const;
 

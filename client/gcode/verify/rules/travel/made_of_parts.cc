@@ -55,7 +55,7 @@ struct LayerParts {
              !tail_feeds.contains(part.steps[0].feed);
     }
     const bool measured = std::any_of(part.steps.begin(), part.steps.end(),
-                                      [](const LinkStep& step) { return step.length_mm > 0; });
+                                      [](const PartStep& step) { return step.length_mm > 0; });
     return is_level && !measured && level.HasLike(part);
   }
 };
@@ -79,7 +79,7 @@ std::vector<Parts> Missing(const LayerParts& had, const LinkCutter& link, bool f
 // For people.
 std::string NameOf(const LinkPart& part) {
   std::string words;
-  for (const LinkStep& step : part.steps) {
+  for (const PartStep& step : part.steps) {
     absl::StrAppend(&words, words.empty() ? "" : ", ", std::string(MoveKindName(step.kind)));
   }
   constexpr const char* kRoles[] = {"leaves by", "goes at the speed of", "arrives by"};
@@ -142,7 +142,7 @@ void ObserveLastParts(const LayerPair& layer, LayerFindings& findings) {
 }
 
 void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  for (const NewLink& link : is.new_links) {
+  for (const UnprovenLink& link : is.new_links) {
     const auto known = [&was](const LinkPart& part) { return was.parts.Has(part); };
     const bool fine = std::any_of(
         link.missing.begin(), link.missing.end(),

@@ -5,7 +5,9 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "tests/client/gcode/verify/small_prints.h"
+#include "tests/support/growth.h"
 
 namespace traverse::gcode {
 namespace {
@@ -106,6 +108,21 @@ TEST(VerifyMadeOfParts, PrimesNotBelowTheLayer) {
   EXPECT_EQ(Ordered(travel + rise + prime + line, travel + rise + prime + line), "");
   EXPECT_EQ(Ordered(travel + rise + prime + line, travel + prime + rise + line), "made_of_parts");
   EXPECT_EQ(Ordered(travel + prime + rise + line, travel + prime + rise + line), "");
+}
+
+// A link of many steps, in which what is pulled back before each prime counts.
+TEST(VerifyMadeOfParts, ManyStepsOfALinkTakeNoLongerEach) {
+  const auto check = [](int steps) {
+    std::string travel = "G1 E-1 F2100\n";
+    for (int step = 0; step < steps; ++step) {
+      absl::StrAppend(&travel, "G1 Z.", 6 + step % 2, " F9000\nG1 E-.1 F2100\nG1 E.1 F2100\n");
+    }
+    travel += "G1 X0 Y9 F9000\nG1 Z.2\nG1 E1 F2100\n";
+    const std::string line = ";TYPE:Internal infill\nG1 F1800\n";
+    const std::string a = kHead + kTwo + travel + line + "G1 X9 Y9 E.3\n";
+    EXPECT_NE(Ordered(a, kHead + kTwo + With(travel, "X0", "X9") + line + "G1 X0 Y9 E.3\n"), "x");
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(2'500, check), traverse::testing::kSlowGrowth);
 }
 
 TEST(VerifyMadeOfParts, WhatWaitsStillDoes) {
