@@ -107,13 +107,13 @@ class Views(CommandLine):
 
         code, out, err = self.run_traverse("verify", plain, deeper, f"--json={findings}", "--policy=free")
         self.assertEqual((code, out), (1, ""))
-        self.assertRegex(err, r"deeper.gcode:16: retracts 1.8000 mm; .* \(retractions; .*plain.gcode:\d+\)")
+        self.assertRegex(err, r"deeper.gcode:16: leaves by retraction of 1.8000 mm; .* \(made_of_parts; .*plain.gcode")
         other = json.loads(read(findings))
         self.assertFalse(other["same"])
         self.assertEqual(other["policy"], "free")
         self.assertEqual([rule["rule"] for rule in other["rules"]], [rule["rule"] for rule in same["rules"]])
         broken = [rule for rule in other["rules"] if rule["breaks"]]
-        self.assertEqual([rule["rule"] for rule in broken], ["retractions", "kept_travel"])
+        self.assertEqual([rule["rule"] for rule in broken], ["made_of_parts", "kept_travel"])
         self.assertEqual(broken[0]["breaks"], 1)
         self.assertEqual(broken[0]["first"]["optimised_line"], 16)
         self.assertIn(broken[0]["first"]["message"], err)

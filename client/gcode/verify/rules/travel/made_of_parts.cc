@@ -4,12 +4,14 @@
 // of the original's. Travel may be cut into parts in any way that makes it so.
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/link_parts.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -81,6 +83,11 @@ std::string NameOf(const LinkPart& part) {
   std::string words;
   for (const PartStep& step : part.steps) {
     absl::StrAppend(&words, words.empty() ? "" : ", ", std::string(MoveKindName(step.kind)));
+    const bool standing = step.kind == MoveKind::kRetraction || step.kind == MoveKind::kPriming;
+    if (standing && step.filament != 0) {
+      absl::StrAppendFormat(&words, " of %.4f mm",
+                            static_cast<double>(std::abs(step.filament)) * 1e-6);
+    }
   }
   constexpr const char* kRoles[] = {"leaves by", "goes at the speed of", "arrives by"};
   return absl::StrCat(kRoles[part.role], " ", words);

@@ -44,8 +44,10 @@ TEST(VerifyMadeOfParts, ThatOfTheOriginal) {
   EXPECT_EQ(Ordered(a, a), "");
   EXPECT_EQ(Ordered(a, With(a, pull + rise + last, rise + pull + last)), "made_of_parts");
   EXPECT_EQ(Ordered(a, With(a, last + end, last + "G1 E1 F2100\nG1 Z.2 F9000\n")), "made_of_parts");
-  EXPECT_THAT(MessageOf(a, With(a, pull + rise + last, rise + pull + last)),
-              HasSubstr("leaves by move up, retraction; no such travel of the original does so"));
+  EXPECT_THAT(
+      MessageOf(a, With(a, pull + rise + last, rise + pull + last)),
+      HasSubstr(
+          "leaves by move up, retraction of 1.0000 mm; no such travel of the original does so"));
   // Either order, if the original has both.
   const std::string both = With(a, pull + rise + last, rise + pull + last);
   const std::string turned = kHead + Low("X0 Y0", "Y0") +
