@@ -224,9 +224,8 @@ constexpr std::array<CauseWords, kCauses> kWords = {{
      "without it (\"Prime tower\", \"Wipe tower\" in the slicer) more could move"},
     {"are in or beside what a script prints, such as a purge line (first in $1)",
      "only the slicer's start or custom G-code changes that"},
-    {"are printed rising, as spiral vases are, or with the filament retracted, the first of them "
-     "in "
-     "$1",
+    {"are printed rising, as spiral vases are, or with the filament retracted, "
+     "the first of them in $1",
      "with spiral vase off in the slicer more could move"},
     {"stay within the label of an object, the first of which is $0",
      "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") paths of "

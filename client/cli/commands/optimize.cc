@@ -64,7 +64,7 @@ absl::StatusOr<GcodeTarget> TargetOf(const Flags& flags, const InputFile& input)
   return GcodeTarget{};
 }
 
-// The results of the job: its runs and, if the file is written or drawn, the new text.
+// The results of the job: its run and, if the file is written or drawn, the new text.
 struct Optimized {
   report::JobRun run;
   std::optional<GcodeRewrite> rewrite;
