@@ -17,8 +17,9 @@ constexpr int64_t kSlackUm = 2;
 // So many parts that differ in amounts and heights alone are remembered; no slicer has as many.
 constexpr size_t kMostAlike = 256;
 
-// So many ways to cut a link are tried; slicers' links have fewer travel moves at a time.
-constexpr size_t kMostCuts = 32;
+// So many ways to cut a link are tried, and remembered if none is right. Slicers' links have fewer
+// runs of travel moves, and fewer moves where two paths meet.
+constexpr size_t kMostCuts = 4;
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
@@ -125,7 +126,7 @@ std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
   }
   if (!cuts.empty()) return cuts;
   cuts.push_back(CutAt(moves_.size()));
-  if (level_ || moves_.size() > kMostCuts) return cuts;
+  if (level_ || moves_.size() > 2 * kMostCuts) return cuts;
   // Two paths that meet, one above the other; how high the head goes there, travel_heights.cc says.
   LinkCutter flat = *this;
   flat.DropRisesToLayer(HUGE_VAL);
