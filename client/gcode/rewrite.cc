@@ -378,7 +378,7 @@ std::string DescribeFast(const GcodeRewrite& rewrite) {
   constexpr double kWorthSaying = 0.005;  // of the print time
   const double before = rewrite.before.seconds;
   const double saved = before - rewrite.after.seconds;
-  if (rewrite.fast_seconds - saved < kWorthSaying * before) return "";
+  if (rewrite.fast_seconds - saved <= kWorthSaying * before) return "";
   return absl::StrFormat("--policy=fast would save about %.*f %% of the print time (%s)",
                          rewrite.fast_seconds < 0.1 * before ? 1 : 0,
                          100 * rewrite.fast_seconds / before, gcode::Minutes(rewrite.fast_seconds));

@@ -72,5 +72,7 @@ TEST(FastForecast, PromisesNothingWhereNothingIsHidden) {
   }
 }
 
+TEST(FastForecast, PromisesNothingOfAPrintThatTakesNoTime) { EXPECT_EQ(DescribeFast({}), ""); }
+
 }  // namespace
 }  // namespace traverse::gcode
