@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -185,8 +187,9 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   assert(job.gcode != nullptr);
   SearchOptions search = options;
   const absl::Time due = absl::Now() + options.deadline;
-  search.finish_by = options.finish_by - WritingTime(job.gcode->text.size(), options.reading,
-                                                     options.finish_by - absl::Now());
+  search.finish_by =
+      options.finish_by - WritingTime(job.gcode->text.size(), ProcessorLoad(), options.reading,
+                                      options.finish_by - absl::Now());
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
@@ -213,12 +216,20 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   return made;
 }
 
-absl::Duration WritingTime(size_t bytes, absl::Duration reading, absl::Duration left) {
+double ProcessorLoad() {
+  double of_last_minute = 0;
+  if (getloadavg(&of_last_minute, 1) != 1) return 1;
+  return std::max(1.0, of_last_minute / std::max(1u, std::thread::hardware_concurrency()));
+}
+
+absl::Duration WritingTime(size_t bytes, double load, absl::Duration reading, absl::Duration left) {
   constexpr absl::Duration kLeast = absl::Milliseconds(100);
   constexpr double kSecondsPerByte = 0.25e-6;
   constexpr double kReadings = 4;  // files of many small layers take up to ten
   const absl::Duration idle = kLeast + absl::Seconds(kSecondsPerByte * static_cast<double>(bytes));
-  return std::max(idle, std::min(kReadings * reading, left / 2));
+  // Reading alone does not tell: a thread that has just woken gets a processor sooner than one that
+  // has searched for long.
+  return std::max(idle, std::min(std::max(load * idle, kReadings * reading), left / 2));
 }
 
 }  // namespace traverse

@@ -120,10 +120,14 @@ struct OptimizedFile {
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
                                        const OptimizeFileOptions& options);
 
+// How many want each processor of this machine, on the average of the last minute; at least 1.
+double ProcessorLoad();
+
 // How long writing and verifying a text of `bytes` bytes may take, where `left` is left for the
-// search and for that: some times as long as reading it took, at most half of `left`, and no less
-// than on an idle machine. Searches end this much before `finish_by`.
-absl::Duration WritingTime(size_t bytes, absl::Duration reading, absl::Duration left);
+// search and for that: as long as on an idle machine for each of `load` who want a processor, some
+// times as long as reading it took, at most half of `left`, and no less than on an idle machine.
+// Searches end this much before `finish_by`.
+absl::Duration WritingTime(size_t bytes, double load, absl::Duration reading, absl::Duration left);
 
 }  // namespace traverse
 

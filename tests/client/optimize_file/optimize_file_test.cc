@@ -148,12 +148,23 @@ TEST_F(OptimizeFileTest, RetractsNoMoreThanTheFileWhereThatCostsLittle) {
 }
 
 TEST(WritingTime, IsLongerWhereReadingWasSlow) {
-  const absl::Duration idle = WritingTime(1'000'000, absl::ZeroDuration(), absl::Minutes(1));
+  const absl::Duration idle = WritingTime(1'000'000, 1, absl::ZeroDuration(), absl::Minutes(1));
   EXPECT_EQ(idle, absl::Milliseconds(350));
-  EXPECT_EQ(WritingTime(1'000'000, absl::Milliseconds(50), absl::Minutes(1)), idle);
-  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::Minutes(1)), absl::Seconds(8));
-  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::Seconds(6)), absl::Seconds(3));
-  EXPECT_EQ(WritingTime(1'000'000, absl::Seconds(2), absl::InfiniteDuration()), absl::Seconds(8));
+  EXPECT_EQ(WritingTime(1'000'000, 1, absl::Milliseconds(50), absl::Minutes(1)), idle);
+  EXPECT_EQ(WritingTime(1'000'000, 1, absl::Seconds(2), absl::Minutes(1)), absl::Seconds(8));
+  EXPECT_EQ(WritingTime(1'000'000, 1, absl::Seconds(2), absl::Seconds(6)), absl::Seconds(3));
+  EXPECT_EQ(WritingTime(1'000'000, 1, absl::Seconds(2), absl::InfiniteDuration()),
+            absl::Seconds(8));
+}
+
+TEST(WritingTime, IsLongerOnABusyMachine) {
+  const auto writing = [](double load, absl::Duration left) {
+    return WritingTime(1'000'000, load, absl::Milliseconds(50), left);
+  };
+  EXPECT_EQ(writing(8, absl::Minutes(1)), absl::Milliseconds(8 * 350));
+  EXPECT_EQ(writing(8, absl::Seconds(2)), absl::Seconds(1));
+  EXPECT_EQ(writing(8, absl::Milliseconds(400)), absl::Milliseconds(350));
+  EXPECT_GE(ProcessorLoad(), 1);
 }
 
 // Each prime that is a little short is part of the print, as one that pushes more is.
