@@ -13,7 +13,7 @@ inline bool Retracts(const TraceMove& move) {
   return move.kind == MoveKind::kRetraction || (move.kind == MoveKind::kWipe && move.filament < 0);
 }
 
-// That of `link`; nothing if there is none.
+// That of `link`; nothing if there is none. The head may rise to the next layer before it retracts.
 inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   constexpr double kLongestMm = 1.0;
   const TraceLink& traced = chunk.links[link];
@@ -22,7 +22,9 @@ inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   const bool leaves = first.kind == MoveKind::kTravel && first.open && first.in_print &&
                       first.z_from_mm == first.z_to_mm && first.length_mm() >= kLeastDepartureMm &&
                       first.length_mm() <= kLongestMm;
-  return leaves && Retracts(chunk.moves[traced.first_move + 1]) ? &first : nullptr;
+  uint32_t next = traced.first_move + 1;
+  while (next + 1 < traced.end_move && chunk.moves[next].kind == MoveKind::kUp) ++next;
+  return leaves && Retracts(chunk.moves[next]) ? &first : nullptr;
 }
 
 }  // namespace traverse::gcode

@@ -82,6 +82,18 @@ TEST(VerifyLifts, TheHeadRisesBeforeTheTravelToALayer) {
   EXPECT_EQ(Broken(kHead + late, kHead + late), "");
 }
 
+// The short move inwards with which a wall is left, before the head rises and retracts.
+TEST(VerifyLifts, TheHeadLeavesAWallBeforeItRisesToALayer) {
+  const std::string inwards = "G1 X10.3 Y10.3 F9000\n";
+  const std::string wall = kSquare + inwards;
+  const std::string line = Line("Internal infill", "X12 Y15", "X18 Y15");
+  const std::string to = kNextLayer + Line("Internal infill", "X12 Y12", "X18 Y12");
+  EXPECT_EQ(Broken(kHead + wall + line + to, kHead + line + wall + to), "");
+  EXPECT_EQ(Broken(kHead + wall + line + to,
+                   kHead + line + With(wall, inwards, "G1 X11.3 Y11.3 F9000\n") + to),
+            "open_travel lifts path_ends");
+}
+
 // From the top of one object to the foot of the next one.
 TEST(VerifyLifts, TheHeadGoesDownBehindTheTravelToAnObject) {
   const std::string first = kTwo + "G1 Z5 F9000\n" + kTwo;
