@@ -100,7 +100,7 @@ void LayerLinks::DecideTravel(const Placement& from, Point end, const Placement&
   PlannedTravel behind = rules_.TravelOf(at, begin, feature);
   // What goes on along the path must not put a visible wall between the nozzle and the next one.
   const bool goes_on = !departure->wipes && !departure->departs;
-  if (goes_on && spares_walls_ && behind.crosses) form.retracts = true;
+  if (goes_on && spares_walls_ && behind.retracts) form.retracts = true;
   // That stays with the path, and so does what comes before its wipe.
   form.departs = !departure->departs || Departs(from, *departure, travel, behind);
   if (form.departs && !from.as_given()) form.turned_departure = departures_.ShortMove(from);

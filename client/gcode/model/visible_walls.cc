@@ -31,6 +31,33 @@ WallCrowd NoCrowdYet(const std::vector<Outline>& outlines) {
 
 Segment SegmentOf(Point a, Point b) { return {{a.x, a.y}, {b.x, b.y}, 0}; }
 
+// What is left of the moves without the ends of their whole travel.
+std::vector<TravelLine> WithoutEnds(const std::vector<TravelLine>& moves) {
+  double length = 0;
+  for (const TravelLine& move : moves) length += Distance(move.from, move.to);
+  const double slack = std::min(VisibleWalls::kEndSlackMm, 0.2 * length);
+  std::vector<TravelLine> left;
+  double at = 0;
+  for (const auto& [begin, end] : moves) {
+    const double own = Distance(begin, end);
+    const double from = std::clamp(slack - at, 0.0, own);
+    const double to = std::clamp(length - slack - at, 0.0, own);
+    at += own;
+    if (to <= from) continue;
+    const auto point = [&, a = begin, b = end](double mm) -> Point {
+      return {a.x + (b.x - a.x) * mm / own, a.y + (b.y - a.y) * mm / own};
+    };
+    left.push_back({point(from), point(to)});
+  }
+  return left;
+}
+
+std::vector<TravelLine> MovesOf(absl::Span<const Point> travel) {
+  std::vector<TravelLine> moves;
+  for (size_t i = 1; i < travel.size(); ++i) moves.push_back({travel[i - 1], travel[i]});
+  return moves;
+}
+
 }  // namespace
 
 bool IsVisibleWall(Feature feature) {
@@ -67,11 +94,11 @@ VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines, const std::vect
 bool VisibleWalls::Touched(absl::Span<const Point> travel) const {
   // Arcs are chords here, and coordinates are rounded.
   constexpr double kNearerMm = 0.02;
-  std::vector<Point> line(travel.begin(), travel.end());
+  const std::vector<TravelLine> moves = WithoutEnds(MovesOf(travel));
+  if (moves.empty()) return false;
+  std::vector<Point> line = {moves[0].from};
+  for (const TravelLine& move : moves) line.push_back(move.to);
   const size_t last = line.size() - 1;
-  const Point begin = grid_.WithoutEnds(line[0], line[1]).first;
-  line[last] = grid_.WithoutEnds(line[last - 1], line[last]).second;
-  line[0] = begin;
   const std::vector<Point> back(line.rbegin(), line.rend());
   bool touches = false;
   for (size_t i = 1; i <= last && !touches; ++i) {
@@ -141,31 +168,15 @@ bool VisibleWalls::IsOnOne(Point point) const {
 }
 
 bool VisibleWalls::CrossedByTravel(const std::vector<Point>& travel) const {
-  std::vector<TravelLine> moves;
-  for (size_t i = 1; i < travel.size(); ++i) moves.push_back({travel[i - 1], travel[i]});
-  return CrossedByMoves(moves);
+  return CrossedByMoves(MovesOf(travel));
 }
 
 bool VisibleWalls::CrossedByMoves(const std::vector<TravelLine>& moves) const {
   if (moves.size() == 1) return Crossed(moves[0].from, moves[0].to);
-  double length = 0;
-  for (const TravelLine& move : moves) length += Distance(move.from, move.to);
-  const double slack = std::min(kEndSlackMm, 0.2 * length);
   bool crosses = false;
-  double at = 0;
-  for (size_t i = 0; i < moves.size() && !crosses; ++i) {
-    const auto& [begin, end] = moves[i];
-    const double own = Distance(begin, end);
-    const double from = std::clamp(slack - at, 0.0, own);
-    const double to = std::clamp(length - slack - at, 0.0, own);
-    at += own;
-    if (to <= from) continue;
-    const auto point = [&, a = begin, b = end](double mm) -> Point {
-      return {a.x + (b.x - a.x) * mm / own, a.y + (b.y - a.y) * mm / own};
-    };
-    const Point a = point(from);
-    const Point b = point(to);
-    grid_.ForEachOnLine(a, b, [&](uint32_t s) {
+  for (const auto& [a, b] : WithoutEnds(moves)) {
+    if (crosses) break;
+    grid_.ForEachOnLine(a, b, [&, a = a, b = b](uint32_t s) {
       crosses = SegmentsCross(a, b, grid_.segments()[s].a, grid_.segments()[s].b);
       return !crosses;
     });

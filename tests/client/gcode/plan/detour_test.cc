@@ -72,6 +72,16 @@ TEST(VisibleWalls, AreTouchedByTravelThatComesBackToItsOwn) {
   EXPECT_FALSE(touches(2.15, {{0, 0}, {12, .15}, {16, 3}})) << "along the floor, and away";
 }
 
+// Behind a short first leg: what lies less than 0.25 mm from the end of the travel does not count.
+TEST(VisibleWalls, AreTouchedByTravelAroundACornerOfTheirOwn) {
+  Outline bend = Wall({{0, 0}, {20, 0}, {20, 20}, {10, 20}, {10, 10}, {0, 10}, {0, 0}});
+  bend.width_mm = 0.62;
+  const VisibleWalls walls({bend});
+
+  EXPECT_TRUE(walls.Touched(std::vector<Point>{{10, 10.2}, {10.4, 10.16}, {2, 5}}));
+  EXPECT_FALSE(walls.Touched(std::vector<Point>{{10, 10.2}, {10.4, 10}, {4, 5}}));
+}
+
 // The shortest travel moves pass corners by less than coordinates tell.
 TEST(Detours, CrossNoWallAsTheyAreWritten) {
   const VisibleWalls walls(
