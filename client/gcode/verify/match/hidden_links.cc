@@ -32,8 +32,10 @@ bool Adjoin(const LayerShape& below, const LayerShape& above) {
 
 class HiddenTravel {
  public:
-  explicit HiddenTravel(const LayerShapes& shapes)
+  // With `clearly`: what comes near to where it would be seen is not hidden either.
+  HiddenTravel(const LayerShapes& shapes, bool clearly)
       : shapes_(shapes),
+        clearly_(clearly),
         half_mm_(HalfWidthOf(shapes.here, shapes.here.z_mm() - shapes.below.z_mm())) {}
 
   // Whether nobody sees the straight move behind `behind_mm` of travel that left the path at
@@ -54,16 +56,17 @@ class HiddenTravel {
 
  private:
   bool HidesPoint(Point at, bool leaves) const {
-    const bool near = shapes_.here.IsNearWall(at, half_mm_);
+    const bool near = shapes_.here.IsNearWall(at, clearly_ ? 2 * half_mm_ : half_mm_);
     if (near ? !leaves : !shapes_.here.IsWithin(at)) return false;
     return Covers(shapes_.below, at) && Covers(shapes_.above, at);
   }
 
   bool Covers(const LayerShape& shape, Point at) const {
-    return shape.IsWithin(at) || shape.IsNearWall(at, half_mm_);
+    return shape.IsNearWall(at, half_mm_) ? !clearly_ : shape.IsWithin(at);
   }
 
   const LayerShapes& shapes_;
+  const bool clearly_;
   const double half_mm_;
 };
 
@@ -83,17 +86,39 @@ absl::Span<const TraceMove> TravelAlone(const TraceChunk& chunk, uint32_t link, 
       .subspan(traced.first_move + skipped, traced.end_move - traced.first_move - skipped);
 }
 
-// Whether nobody sees `moves`, which follow each other, are no longer than `longest_mm`, and bend
-// only if the straight one would be seen.
-bool Hides(const HiddenTravel& travel, absl::Span<const TraceMove> moves, double longest_mm) {
+// How many of `moves` go along the path that they leave, however fast.
+size_t MovesAlong(const LayerPair& layer, const Visit& left, absl::Span<const TraceMove> moves) {
+  const uint32_t along = LayerPair::TailMoves(layer.is(), left.last_path, layer.PiecesOf(left.path),
+                                              /*any_speed=*/true);
+  const TraceMove* end = &layer.is().moves[layer.is().links[left.last_path + 1].first_move] + along;
+  size_t count = 0;
   double length = 0;
   for (const TraceMove& move : moves) {
+    length += move.length_mm();
+    if (&move >= end || length > kLeavingMm) break;
+    ++count;
+  }
+  return count;
+}
+
+// Whether nobody sees `moves`, which follow each other, are no longer than `longest_mm`, and bend,
+// behind the first `along` of them, only if the straight one would not clearly be hidden.
+bool Hides(const LayerShapes& shapes, absl::Span<const TraceMove> moves, size_t along,
+           double longest_mm) {
+  const HiddenTravel travel(shapes, /*clearly=*/false);
+  const Point left = moves.front().from;
+  double length = 0;
+  double along_mm = 0;
+  for (size_t i = 0; i < moves.size(); ++i) {
+    const TraceMove& move = moves[i];
+    if (i == along) along_mm = length;
     if (length + move.length_mm() > longest_mm) return false;
-    if (!travel.Hides(moves.front().from, length, move.from, move.to)) return false;
+    if (!travel.Hides(left, length, move.from, move.to)) return false;
     length += move.length_mm();
   }
-  const Point from = moves.front().from;
-  return moves.size() == 1 || !travel.Hides(from, 0, from, moves.back().to);
+  return moves.size() <= along + 1 ||
+         !HiddenTravel(shapes, /*clearly=*/true)
+              .Hides(left, along_mm, moves[along].from, moves.back().to);
 }
 
 }  // namespace
@@ -103,7 +128,6 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
   absl::flat_hash_set<uint32_t> links;
   const bool between = Adjoin(shapes.below, shapes.here) && Adjoin(shapes.here, shapes.above);
   if (!between || !shapes.here.one_tool()) return links;
-  const HiddenTravel travel(shapes);
   const Visit* before = nullptr;
   for (const Visit& visit : layer.visits()) {
     if (layer.Ended()) break;
@@ -116,8 +140,10 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
     const uint32_t tail =
         LayerPair::TailMoves(layer.is(), left->last_path, layer.PiecesOf(left->path));
     const absl::Span<const TraceMove> moves = TravelAlone(layer.is(), link, tail);
-    if (moves.empty() || (moves.size() > 1 && !bends)) continue;
-    if (Hides(travel, moves, longest_mm)) links.insert(link);
+    if (moves.empty()) continue;
+    const size_t along = MovesAlong(layer, *left, moves);
+    if (moves.size() > along + 1 && !bends) continue;
+    if (Hides(shapes, moves, along, longest_mm)) links.insert(link);
   }
   return links;
 }

@@ -116,6 +116,40 @@ TEST(HiddenTravel, MayBendAroundAWallIfThatIsAllowed) {
             "");
 }
 
+// The straight move from (18, 10) to (2, 10) leads past a hole, 0.3 mm beside the middle of its
+// wall: whoever measures otherwise may lead around it.
+TEST(HiddenTravel, MayBendWhereTheStraightMoveIsNotClearlyHidden) {
+  VerifyPermissions bends;
+  bends.inner_detours = true;
+  const auto broken = [&bends](double beside_mm) {
+    Stack stack;
+    for (const double z : {0.2, 0.4, 0.6})
+      stack.Layer(z).Wall(11, 6.625 + beside_mm, 1).Box(0, 0, 20);
+    const std::string open = Opened(stack.Text(), 2, 10, 2);
+    const std::string straight = Stack::Open(2, 10);
+    const size_t at = open.find(straight, open.find(straight) + 1);
+    const std::string around = "G1 X11 Y6.3 F9000\nG1 X2 Y10\n";
+    return BrokenRules(stack.Text(), std::string(open).replace(at, straight.size(), around), bends);
+  };
+
+  EXPECT_EQ(broken(.3), "");
+  EXPECT_NE(broken(.7), "");
+}
+
+// Slicers go on along some paths, as fast as on other travel, before they leave them.
+TEST(HiddenTravel, MayFirstGoOnAlongThePath) {
+  const std::string print = Print();
+  const std::string retracted = Stack::Retracted(2, 10);
+  const auto by = [&](const std::string& lines) {
+    const size_t at = print.find(retracted, print.find(retracted) + 1);
+    return std::string(print).replace(at, retracted.size(), lines);
+  };
+  const std::string along = "G1 X17.5 Y4 F9000\n";
+  EXPECT_EQ(BrokenRules(by(along + retracted), by(along + Stack::Open(2, 10)), Hiding()), "");
+  const std::string aside = "G1 X17.5 Y4.3 F9000\n";
+  EXPECT_NE(BrokenRules(by(along + retracted), by(aside + Stack::Open(2, 10)), Hiding()), "");
+}
+
 // An inner wall that overhangs over more than half of its length is still no wall that is seen.
 TEST(HiddenTravel, PassesAnInnerWallThatOverhangsInPart) {
   const auto print = [](const std::string& begins_as) {
