@@ -201,10 +201,17 @@ bool PullsBack(const TraceChunk& chunk, uint32_t link) {
                      Retracts);
 }
 
-// Whether a wipe that the original has may be missing in `link` of the other file.
-bool MayLackWipe(const LayerPair& layer, uint32_t link, const RuleContext& context) {
+// Whether a wipe that the original has may be missing in `link` of the other file. Where the
+// original leaves the layer without one, as slicers do that retract behind the marks of the next,
+// any path may be left so. `leaves_wiping`: it does not.
+bool MayLackWipe(const LayerPair& layer, uint32_t link, bool leaves_wiping,
+                 const RuleContext& context) {
   if (layer.IsHidden(link)) return true;
   const TraceChunk& is = layer.is();
+  if (link == layer.end_path_is() && !leaves_wiping &&
+      PullsBack(layer.was(), layer.end_path_was()) && PullsBack(is, link)) {
+    return true;
+  }
   const TraceLink& traced = is.links[link];
   return context.permissions.drops_wipes() && !traced.new_layer && !traced.scripted &&
          !PullsBack(is, link);
@@ -239,7 +246,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
       wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
     }
     const bool may_lack =
-        ends ? MayLackWipe(layer, visit.last_path + 1, context)
+        ends ? MayLackWipe(layer, visit.last_path + 1, wiped.back().line != 0, context)
              : context.permissions.drops_wipes() || context.permissions.hides_travel();
     if (had.line != 0 && wipe.line == 0 && !may_lack) {
       findings.breaks.push_back({VerifyRule::kWipes, had.line,

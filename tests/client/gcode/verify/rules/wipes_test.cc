@@ -56,6 +56,25 @@ TEST(VerifyWipes, MayBeLeftOutIfThatIsAllowedWhereNothingIsRetracted) {
   EXPECT_EQ(Broken(original, With(wiped, wipe, "G1 E-1 F2100\n"), allowed), "wipes");
 }
 
+// Where the slicer retracts behind the marks of the next layer, and does not wipe for that, it
+// would not have wiped another path that stands last.
+TEST(VerifyWipes, AreLeftOutAtTheEndOfALayerAsTheFileDoes) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const auto bare = [](const std::string& y) {
+    return "G1 X0 Y" + y + " F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y" + y +
+           " E.3\n";
+  };
+  const std::string to = kNextLayer + "G1 E-1 F2100\n" + bare("20");
+  const std::string wiped = Wiped("X0 Y0", "X9 Y0", "X7 Y0");
+  const std::string a = head + wiped + bare("9") + to;
+  EXPECT_EQ(Broken(a, head + bare("9") + "G1 E-1 F2100\n" + bare("0") + to), "");
+  // But not where that layer is left wiping, nor elsewhere.
+  const std::string both =
+      head + wiped + Wiped("X0 Y9", "X9 Y9", "X7 Y9") + kNextLayer + bare("20");
+  EXPECT_EQ(Broken(both, head + Wiped("X0 Y9", "X9 Y9", "X7 Y9") + bare("0") + to), "wipes");
+  EXPECT_EQ(Broken(a, head + bare("0") + "G1 E-1 F2100\n" + bare("9") + to), "wipes");
+}
+
 // A corner that is wiped along both its sides.
 std::string WipedCorner(const std::string& wipe) {
   return absl::StrCat("G1 X0 Y5 F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n",
