@@ -48,12 +48,13 @@ double DistanceToPiece(Point p, Point a, Point b) {
 }
 
 bool PiecesCross(Point a, Point b, Point c, Point d) {
-  const double c_side = Side(a, b, c);
-  const double d_side = Side(a, b, d);
-  if ((c_side > 0 && d_side > 0) || (c_side < 0 && d_side < 0)) return false;
+  // What is so near to the line lies on it, and counts as on one side of it.
+  constexpr double kOnLineMm = 1e-7;
+  const double on_line = kOnLineMm * DistanceOf(a, b);
+  if ((Side(a, b, c) < -on_line) == (Side(a, b, d) < -on_line)) return false;
   const double a_side = Side(c, d, a);
   const double b_side = Side(c, d, b);
-  return ((a_side > 0) != (b_side > 0)) && a_side != 0 && b_side != 0 && (c_side != d_side);
+  return (a_side < 0 && b_side > 0) || (a_side > 0 && b_side < 0);
 }
 
 double DistanceOfPieces(Point a, Point b, Point c, Point d) {

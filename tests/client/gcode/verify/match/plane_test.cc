@@ -39,6 +39,22 @@ TEST(PieceGrid, FindsWhatIsNear) {
   }
 }
 
+TEST(PiecesCross, WhereALineLeadsFromOneSideToTheOther) {
+  EXPECT_TRUE(PiecesCross({0, 5}, {20, 5}, {10, 0}, {10, 10}));
+  EXPECT_FALSE(PiecesCross({0, 5}, {9, 5}, {10, 0}, {10, 10}));
+  // Through a corner of two lines, and past one.
+  const auto crosses = [](Point before, Point corner, Point behind) {
+    return PiecesCross({0, 5}, {20, 5}, before, corner) ||
+           PiecesCross({0, 5}, {20, 5}, corner, behind);
+  };
+  EXPECT_TRUE(crosses({10, 10}, {12, 5}, {10, 0}));
+  EXPECT_TRUE(crosses({10, 0}, {12, 5}, {10, 10}));
+  EXPECT_FALSE(crosses({10, 10}, {12, 5}, {14, 10}));
+  // Along a line that turns away.
+  EXPECT_FALSE(crosses({30, 5}, {12, 5}, {12, 10}));
+  EXPECT_FALSE(crosses({30, 5}, {12, 5 + 1e-12}, {12, 10}));
+}
+
 // Damaged files lead a thousand kilometres away.
 TEST(PieceGrid, IsAskedForPlacesAnywhere) {
   std::mt19937 random(2);
