@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr size_t kProbes = 16;
+constexpr size_t kProbes = 24;
 
 // Segments looked at for each of a layer: far more than a printable layer needs. Thousands of loops
 // in one place are told apart as far as this reaches; the others stay as they are named.
@@ -29,10 +29,16 @@ Segment ProbeAt(const Outline& outline, size_t k) {
   return {middle, {middle.x + (b.y - a.y) * reach, middle.y - (b.x - a.x) * reach}, 0};
 }
 
-// Of the sampled points: those with a neighbor, and all.
+// The length of the segments looked at: of those with a neighbor, and of all.
 struct Probes {
-  size_t hits = 0;
-  size_t all = 0;
+  double beside_mm = 0;
+  double all_mm = 0;
+
+  // Along most of the outside. The verifier measures otherwise, and half of it is its limit.
+  bool IsInner() const {
+    constexpr double kMost = 0.6;
+    return beside_mm > kMost * all_mm;
+  }
 };
 
 void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid, size_t& looks,
@@ -49,8 +55,9 @@ void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid
       hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
       return !hit;
     });
-    ++probes.all;
-    probes.hits += hit ? 1 : 0;
+    const double length = Distance(outline.shape()[k], outline.shape()[k + 1]);
+    probes.all_mm += length;
+    if (hit) probes.beside_mm += length;
   }
 }
 
@@ -100,7 +107,7 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
     ProbeOutside(outlines[loop], loop, grid, looks, probes);
     if (in_two[loop]) ProbeOutside(outlines[loop + 1], loop, grid, looks, probes);
     if (looks == 0) break;
-    if (probes.hits * 2 <= probes.all) continue;
+    if (!probes.IsInner()) continue;
     outlines[loop].feature = Feature::kInnerWall;
     if (in_two[loop]) outlines[loop + 1].feature = Feature::kInnerWall;
   }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/visible_walls.h"
 #include "tests/client/gcode/support/read_text.h"
@@ -109,6 +111,23 @@ TEST(Loops, ALoopBegunElsewhereIsALoop) {
     }
     EXPECT_EQ(outlines.back().feature, Feature::kLoop);
   }
+}
+
+// A square within another one, of which many short segments are away from that.
+TEST(Loops, WhatLiesBesideAnotherLoopForMostOfItsLengthIsAnInnerWall) {
+  std::string inner = To(10.4, 10.4, false) + "G1 F1200\n";
+  Point at{10.4, 10.4};
+  const auto print = [&](double x, double y) {
+    const double e = 0.0374 * Distance(std::exchange(at, {x, y}), {x, y});
+    absl::StrAppend(&inner, "G1 X", x, " Y", y, " E", e, "\n");
+  };
+  print(29.6, 10.4);
+  for (int i = 0; i <= 12; ++i) print(29.6 - 4.6 * i / 12, 25 + 4.6 * i / 12);
+  print(10.4, 29.6);
+  print(10.4, 10.4);
+  const auto file = Read("M83\nG1 Z.2 F9000\n" + inner + Square(10, false) + To(50, 50, false));
+
+  EXPECT_EQ(OutlinesOf(*file).front().feature, Feature::kInnerWall);
 }
 
 TEST(Loops, TwoLinesThatDoNotCloseAreNoLoop) {
