@@ -142,6 +142,9 @@ class LayerSolver {
   template <typename RouteOf>
   RoutesInView InView(const LayerProblem& problem, const Route& route, const TrueStart& at,
                       const RouteOf& route_of) const;
+  std::vector<RoutesInView> KnownInView(const LayerProblem& problem, const Route& found,
+                                        ChainLayer& layer, const TrueStart& at, bool initial,
+                                        Budget& budget) const;
   void SolveInView(const LayerProblem& problem, ChainLayer& layer, const TrueStart& at,
                    Budget& budget, Solution& solution) const;
 

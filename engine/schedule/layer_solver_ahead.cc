@@ -73,6 +73,42 @@ LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const
   return routes;
 }
 
+// The routes of the layer and those in view that are known before they are searched: `found` for
+// the layer and the next ones as each is found from there, what the layer before foresaw, greedy's,
+// the caller's with `initial`, and, where it is known, what each layer has alone.
+std::vector<LayerSolver::RoutesInView> LayerSolver::KnownInView(const LayerProblem& problem,
+                                                                const Route& found,
+                                                                ChainLayer& layer,
+                                                                const TrueStart& at, bool initial,
+                                                                Budget& budget) const {
+  Budget beginnings = budget.WithShare(kBeginningsShare);
+  const auto alone = [&](ChainLayer& next, const LayerProblem& from) {
+    const Solution* known = FoundFrom(next, from.start);
+    if (known != nullptr) return known->route;
+    return Prepared(next).Resume(from, next.first.route, beginnings).route;
+  };
+  const auto foreseen = [&](ChainLayer& next, const LayerProblem& from) {
+    return next.foreseen.empty() ? alone(next, from) : next.foreseen;
+  };
+  const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
+    return GreedyRoute(from, next);
+  };
+  const auto of_caller = [&](const ChainLayer& next, const LayerProblem&) {
+    return next.given.initial_route;
+  };
+  const auto fallback = [&](const ChainLayer& next, const LayerProblem&) {
+    return FallbackRoute(next);
+  };
+  std::vector<RoutesInView> known = {InView(problem, found, at, alone)};
+  if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
+  known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
+  if (initial) known.push_back(InView(problem, layer.given.initial_route, at, of_caller));
+  if (KnowsAlone(layer, at)) {
+    known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
+  }
+  return known;
+}
+
 // Ends the layer with the next ones in view. `solution` is of the layer alone. What is found is
 // never longer, for all these layers together, than one after the other from there, or than what
 // the layer before foresaw of them, or than greedy.
@@ -87,33 +123,8 @@ void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, co
   const bool holds = of_all(&ChainLayer::initial_holds);
   LayerProblem searched = problem;
   searched.is_searched = of_all(&ChainLayer::resumes_initial);
-  Budget beginnings = budget.WithShare(kBeginningsShare);
-  const auto resumed = [&](ChainLayer& next, const LayerProblem& from) {
-    return Prepared(next).Resume(from, next.first.route, beginnings).route;
-  };
-  const auto alone = [&](ChainLayer& next, const LayerProblem& from) {
-    const Solution* found = FoundFrom(next, from.start);
-    return found != nullptr ? found->route : resumed(next, from);
-  };
-  const auto foreseen = [&](ChainLayer& next, const LayerProblem& from) {
-    return next.foreseen.empty() ? alone(next, from) : next.foreseen;
-  };
-  const auto fallback = [&](const ChainLayer& next, const LayerProblem&) {
-    return FallbackRoute(next);
-  };
-  const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
-    return GreedyRoute(from, next);
-  };
-  std::vector<RoutesInView> known = {InView(problem, solution.route, at, alone)};
-  if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
-  known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
-  const auto initial = [&](const ChainLayer& next, const LayerProblem&) {
-    return next.given.initial_route;
-  };
-  if (searched.is_searched)
-    known.push_back(InView(problem, layer.given.initial_route, at, initial));
-  const bool knows_alone = KnowsAlone(layer, at);
-  if (knows_alone) known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
+  std::vector<RoutesInView> known =
+      KnownInView(problem, solution.route, layer, at, searched.is_searched, budget);
   const auto search_from = [&](RoutesInView best) {
     if (holds) {
       if (best.route != solution.route && solution.stop == StopReason::kOptimal)
@@ -130,7 +141,8 @@ void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, co
   };
   search_from(*std::min_element(known.begin(), known.end(), costs_less));
   const ChainLayer& last = *at.view.back();
-  if (!knows_alone || LeadsBack(problem, solution.route, layer, at) || HasWalls(last)) return;
+  if (!KnowsAlone(layer, at) || LeadsBack(problem, solution.route, layer, at) || HasWalls(last))
+    return;
   FindWayBack(problem, solution.route, at, budget);
   if (LeadsBack(problem, solution.route, layer, at)) return;
   // Again, with the way back from the last layer.
