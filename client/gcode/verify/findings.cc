@@ -58,18 +58,12 @@ void Observations::Append(const Observations& other) {
   primes.Append(other.primes);
   AppendSeen(other.heights.level, heights.level);
   AppendSeen(other.heights.other, heights.other);
-  AppendSeen(other.rises.level, rises.level);
-  AppendSeen(other.rises.other, rises.other);
   slopes.insert(other.slopes.begin(), other.slopes.end());
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
   if (other.first_highest.line != 0) first_highest = other.first_highest;
   if (other.first_lowest.line != 0) first_lowest = other.first_lowest;
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
-  deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
   descents.insert(descents.end(), other.descents.begin(), other.descents.end());
-  AppendSeen(other.spirals, spirals);
-  lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
-                        other.lifts_of_links.end());
   travel_lengths.insert(travel_lengths.end(), other.travel_lengths.begin(),
                         other.travel_lengths.end());
   travels_to_layers.insert(travels_to_layers.end(), other.travels_to_layers.begin(),

@@ -110,15 +110,6 @@ struct Descent {
   TravelRise rise = TravelRise::kLevel;  // of the travel that it belongs to
 };
 
-// How often the head rises between two paths.
-struct RepeatedLift {
-  bool level = false;  // both paths have the same height
-  uint32_t times = 0;
-  uint32_t dips = 0;  // how often it rises again behind a descent, unless the next path is lower
-  uint32_t line = 0;
-  int64_t layer = -1;
-};
-
 // The travel between two paths.
 struct TravelLength {
   float length_mm = 0;
@@ -268,14 +259,11 @@ struct Observations {
   LiftHeights heights;                  // of moves that state Z
   absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way
   std::vector<StatedHeight> stated;     // by the other file's moves
-  LiftHeights rises;                    // of moves straight up
   ExtremePoint first_highest;           // of the travel from the start script
   ExtremePoint first_lowest;
-  std::vector<LowestTravel> lowest;             // travel that goes lower than what it connects
-  std::vector<LowestTravel> deepest;            // moves straight down that do so
-  std::vector<Descent> descents;                // the longest of each travel
-  absl::flat_hash_map<uint64_t, Seen> spirals;  // by TraceMove::spiral
-  std::vector<RepeatedLift> lifts_of_links;     // links that rise more than once
+  std::vector<LowestTravel> lowest;   // travel that goes lower than what it connects
+  std::vector<LowestTravel> deepest;  // moves straight down that do so
+  std::vector<Descent> descents;      // the longest of each travel
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
   Box box;                                   // of all points

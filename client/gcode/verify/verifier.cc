@@ -204,12 +204,11 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   using Rule = void (*)(const LayerPair&, LayerFindings&);
   using RuleInContext = void (*)(const LayerPair&, const RuleContext&, LayerFindings&);
   static constexpr RuleInContext kInContext[] = {CheckOrder, CheckDirection, CheckSeam, CheckWipes};
-  static constexpr Rule kRules[] = {CheckWholePaths,      CheckOpenTravels,     ObserveOpenHabits,
-                                    CheckKeptTravels,     CheckBends,           CheckFixedMoves,
-                                    CheckScriptedTravels, CheckSinking,         ObserveLifts,
-                                    ObserveHeights,       ObservePrimes,        ObserveParts,
-                                    ObserveFarMoves,      ObserveTravelLengths, ObserveSpeeds,
-                                    CheckCommands,        CheckPathEnds,        CheckDepartures};
+  static constexpr Rule kRules[] = {
+      CheckWholePaths, CheckOpenTravels,     ObserveOpenHabits,    CheckKeptTravels, CheckBends,
+      CheckFixedMoves, CheckScriptedTravels, ObserveLifts,         ObserveHeights,   ObservePrimes,
+      ObserveParts,    ObserveFarMoves,      ObserveTravelLengths, ObserveSpeeds,    CheckCommands,
+      CheckPathEnds,   CheckDepartures};
   for (const RuleInContext check : kInContext) {
     if (!layer.Ended()) check(layer, context_, findings);
   }

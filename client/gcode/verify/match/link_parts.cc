@@ -126,8 +126,11 @@ std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
   }
   if (!cuts.empty()) return cuts;
   cuts.push_back(CutAt(moves_.size()));
-  if (level_ || moves_.size() > 2 * kMostCuts) return cuts;
-  // Two paths that meet, one above the other; how high the head goes there, travel_heights.cc says.
+  const bool wipes = std::any_of(moves_.begin(), moves_.end(), [](const TraceMove* move) {
+    return move->kind == MoveKind::kWipe;
+  });
+  if ((level_ && !wipes) || moves_.size() > 2 * kMostCuts) return cuts;
+  // Two paths that meet, one above the other, or where the wipe of the one ends.
   LinkCutter flat = *this;
   flat.DropRisesToLayer(HUGE_VAL);
   for (const LinkCutter& cutter : {*this, flat}) {

@@ -53,8 +53,8 @@ class LinkCutter {
   // The link cut at its longest travel; at its end if it has none.
   std::vector<LinkPart> Parts() const;
 
-  // The link cut at each of its travel moves, the first four of many; anywhere if it has none, and
-  // is as short.
+  // The link cut at each of its travel moves, the first four of many; anywhere if it has none, is
+  // as short, and wipes or leads to another height.
   std::vector<std::vector<LinkPart>> AllParts() const;
 
  private:

@@ -24,7 +24,8 @@ double DistanceToPiece(Point p, Point a, Point b);
 // Between two straight lines; 0 if they cross.
 double DistanceOfPieces(Point a, Point b, Point c, Point d);
 
-// True if the two cross, or touch elsewhere than at their ends.
+// True if the line from `c` to `d` crosses the other one at a point inside that. Where a line passes
+// a point at which two others meet from either side of it, it crosses one of these.
 bool PiecesCross(Point a, Point b, Point c, Point d);
 
 // A straight piece of a path.

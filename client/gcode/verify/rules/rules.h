@@ -26,7 +26,6 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings);
 void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings);
 void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings);
-void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);

@@ -81,6 +81,20 @@ TEST(VerifyMadeOfParts, NoTravelToALayerHasPartsToo) {
   EXPECT_EQ(Ordered(a, below + leaves + "G1 E1 F2100\nG1 Z.4 F9000\n" + met), "made_of_parts");
 }
 
+// Nor is there any where the next path begins where the wipe ends.
+TEST(VerifyMadeOfParts, PathsThatAWipeLinksAreLeftAndReachedAsOthers) {
+  const auto line = [](const std::string& from, const std::string& to) {
+    return from + "G1 Z.2\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 " + to + " E.3\n";
+  };
+  const std::string pull = "G1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 X7 Y0 E-.5\n;WIPE_END\n";
+  const std::string up = "G1 Z.6 F9000\n";
+  const std::string head = kHead + "G1 E-1 F2100\n" + up + line("G1 X0 Y0 F9000\n", "X9 Y0") + pull;
+  const std::string end = "G1 E-1 F2100\n" + up + line("G1 X0 Y9 F9000\n", "X9 Y9");
+  const std::string a = head + up + line("G1 X7 Y5\n", "X7 Y0") + end;
+  EXPECT_EQ(Ordered(a, head + up + line("", "X7 Y5") + end), "");
+  EXPECT_EQ(Ordered(a, head + "G1 Z.5 F9000\n" + line("", "X7 Y5") + end), "made_of_parts");
+}
+
 TEST(VerifyMadeOfParts, FilamentMovesAtTheHeightOfWhatIsPrinted) {
   const std::string travel = Lifted("X10 Y30");
   const std::string above =
