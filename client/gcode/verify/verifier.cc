@@ -283,8 +283,7 @@ void Verifier::CheckChunk() {
   seen_was_.deposit_accelerations.insert(chunk_was_.accelerations.begin(),
                                          chunk_was_.accelerations.end());
   CheckStandstill(chunk_was_, chunk_is_, findings_);
-  CheckSetBacks(chunk_was_, chunk_is_, findings_);
-  CheckWipeMarks(chunk_was_, chunk_is_, findings_);
+  CheckLineFaults(chunk_was_, chunk_is_, findings_);
   progress_was_.Append(chunk_was_);
   progress_is_.Append(chunk_is_);
   // What follows the last path is a script.

@@ -214,8 +214,7 @@ void NumberAsOriginal(const std::vector<MovedLayer>& layers, TraceChunk& is) {
   if (layers.empty()) return;
   renumber(is.moves);
   renumber(is.standstills);
-  renumber(is.set_backs);
-  renumber(is.mark_faults);
+  renumber(is.line_faults);
 }
 
 }  // namespace traverse::gcode

@@ -1,7 +1,9 @@
-// No command within a path unless the original has it between the same two segments; none that sets
-// a value and sets it back without a move between.
+// No command within a path unless the original has it between the same two segments; in no section
+// more than in the original that set a value and set it back without a move between, nor more marks
+// of wipes that are out of place.
 
 #include <map>
+#include <utility>
 
 #include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -64,17 +66,22 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
   }
 }
 
-void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
-  std::map<uint32_t, std::pair<int64_t, uint32_t>> had;  // by section: how many, the first line
-  for (const SetBack& event : was.set_backs) {
-    auto& [count, line] = had[event.section];
-    if (count++ == 0) line = event.line;
+void CheckLineFaults(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
+  // How many, and the first one.
+  std::map<std::pair<uint32_t, LineFaultKind>, std::pair<int64_t, uint32_t>> had;
+  for (const LineFault& fault : was.line_faults) {
+    auto& [count, line] = had[{fault.section, fault.kind}];
+    if (count++ == 0) line = fault.line;
   }
-  for (const SetBack& event : is.set_backs) {
-    auto& [count, line] = had[event.section];
+  for (const LineFault& fault : is.line_faults) {
+    auto& [count, line] = had[{fault.section, fault.kind}];
     if (count-- > 0) continue;
-    breaks.push_back({VerifyRule::kCommands, line, event.line, -1,
-                      "a value is set and reset without a move in between"});
+    const bool sets_back = fault.kind == LineFaultKind::kSetsBack;
+    breaks.push_back({sets_back ? VerifyRule::kCommands : VerifyRule::kWipes, line, fault.line, -1,
+                      sets_back ? "a value is set and reset without a move in between"
+                      : fault.kind == LineFaultKind::kUnmarked
+                          ? "a wipe without the marks of wipes"
+                          : "a mark of a wipe's begin or end is out of place"});
   }
 }
 

@@ -47,10 +47,7 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
 
 // Chunk by chunk: what belongs to sections.
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
-void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
-
-// The same: marks of wipes that are out of place.
-void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
+void CheckLineFaults(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 
 // The same: where the original moves.
 void ObserveBounds(const TraceChunk& was, Box& box);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -256,23 +255,6 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
     findings.is.wipes.push_back(DeviationOf(wipe, was.LineOf(was.paths[visit.path]), layer));
-  }
-}
-
-void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
-  // How many, and the first one.
-  std::map<std::pair<uint32_t, MarkFaultKind>, std::pair<int64_t, uint32_t>> had;
-  for (const MarkFault& fault : was.mark_faults) {
-    auto& [count, line] = had[{fault.section, fault.kind}];
-    if (count++ == 0) line = fault.line;
-  }
-  for (const MarkFault& fault : is.mark_faults) {
-    auto& [count, line] = had[{fault.section, fault.kind}];
-    if (count-- > 0) continue;
-    breaks.push_back({VerifyRule::kWipes, line, fault.line, -1,
-                      fault.kind == MarkFaultKind::kUnmarked
-                          ? "a wipe without the marks of wipes"
-                          : "a mark of a wipe's begin or end is out of place"});
   }
 }
 

@@ -119,14 +119,9 @@ struct Standstill {
   Point at;
 };
 
-// A setting that returned to its value at the last move.
-struct SetBack {
-  uint32_t section = 0;
-  uint32_t line = 0;
-};
-
-// What may be wrong with the marks at the begin and end of a wipe.
-enum class MarkFaultKind : uint8_t {
+// What is of no use in a file, or wrong with the marks at the begin and end of a wipe.
+enum class LineFaultKind : uint8_t {
+  kSetsBack,  // a setting returns to its value at the last move
   kUnmarked,  // a wipe without marks
   kBeginsTwice,
   kEndsTwice,
@@ -134,10 +129,10 @@ enum class MarkFaultKind : uint8_t {
   kDeposit,  // something is printed between the marks
 };
 
-struct MarkFault {
+struct LineFault {
   uint32_t section = 0;
   uint32_t line = 0;
-  MarkFaultKind kind = MarkFaultKind::kUnmarked;
+  LineFaultKind kind = LineFaultKind::kUnmarked;
 };
 
 struct TraceSection {
@@ -175,8 +170,7 @@ struct TraceChunk {
   std::vector<uint64_t> accelerations;  // of deposits, some of them more than once
   std::vector<TraceCommand> commands;   // by segment
   std::vector<Standstill> standstills;  // by line
-  std::vector<SetBack> set_backs;       // by line
-  std::vector<MarkFault> mark_faults;   // by line
+  std::vector<LineFault> line_faults;   // by line
   std::vector<Progress> progress;       // lines that tell it
   std::vector<SectionBegin> begins;     // of all sections, ascending
   std::vector<TraceSection> sections;

@@ -138,7 +138,9 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     chunk_.progress.push_back(
         {line.digest, number, section, PercentTold(line.text), clock_.seconds()});
   }
-  if (line.sets_back) chunk_.set_backs.push_back({section, number});
+  if (line.sets_back) {
+    chunk_.line_faults.push_back({section, number, LineFaultKind::kSetsBack});
+  }
   if (line.command != 0 && line.role != LineRole::kProgress)
     pending_commands_.push_back({line.command, 0, number});
   if (line.role == LineRole::kFixed) {
@@ -161,10 +163,10 @@ void Tracer::BeginSection(const VerifyLine& line, uint32_t section, double befor
 
 void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
   if (begins == wiping_) {
-    const MarkFaultKind twice = begins ? MarkFaultKind::kBeginsTwice : MarkFaultKind::kEndsTwice;
-    chunk_.mark_faults.push_back({section, line, twice});
+    const LineFaultKind twice = begins ? LineFaultKind::kBeginsTwice : LineFaultKind::kEndsTwice;
+    chunk_.line_faults.push_back({section, line, twice});
   } else if (!begins && !wiped_) {
-    chunk_.mark_faults.push_back({section, line, MarkFaultKind::kEmpty});
+    chunk_.line_faults.push_back({section, line, LineFaultKind::kEmpty});
   }
   marks_wipes_ = true;
   wiping_ = begins;
@@ -249,8 +251,8 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   states_fan_ = false;
   // What is printed between the marks of a wipe is a fault of theirs; one of it is enough.
   if (wiping_ && !printed_) {
-    chunk_.mark_faults.push_back(
-        {section, static_cast<uint32_t>(line.number), MarkFaultKind::kDeposit});
+    chunk_.line_faults.push_back(
+        {section, static_cast<uint32_t>(line.number), LineFaultKind::kDeposit});
   }
   printed_ |= wiping_;
   TraceSegment segment;
@@ -292,8 +294,8 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
   wiped_ |= wiping_ && move.sideways();
   if (!wiping_ && marks_wipes_ && move.kind == MoveKind::kWipe && motion.number < 10) {
-    chunk_.mark_faults.push_back(
-        {section, static_cast<uint32_t>(line.number), MarkFaultKind::kUnmarked});
+    chunk_.line_faults.push_back(
+        {section, static_cast<uint32_t>(line.number), LineFaultKind::kUnmarked});
   }
   move.acceleration = machine.AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
@@ -356,8 +358,7 @@ TraceChunk Tracer::TakeChunk(uint32_t end_section) {
   chunk_.end_section = end_section;
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});
   MoveLater(end_section, taken.standstills, chunk_.standstills);
-  MoveLater(end_section, taken.set_backs, chunk_.set_backs);
-  MoveLater(end_section, taken.mark_faults, chunk_.mark_faults);
+  MoveLater(end_section, taken.line_faults, chunk_.line_faults);
   const auto loose =
       std::find_if(taken.progress.begin(), taken.progress.end(),
                    [this](const Progress& line) { return line.line > last_held_line_; });
