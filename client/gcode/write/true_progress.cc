@@ -26,10 +26,11 @@ struct ProgressMoment {
   bool in_print = false;  // between the first deposit and the last one
 };
 
-// All of `text`, up to the last deposit.
+// All of `text`.
 struct ProgressMoments {
   std::vector<ProgressMoment> lines;
   double seconds = 0;
+  double deposited_seconds = 0;  // up to the last deposit
 };
 
 ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
@@ -39,7 +40,7 @@ ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
   bool deposits = false;
   const auto visit = [&](const Step& step, double seconds) {
     if (std::exchange(deposits, false)) {
-      found.seconds = seconds;
+      found.deposited_seconds = seconds;
       printed = found.lines.size();
     }
     deposits = step.kind == StepKind::kExtrude;
@@ -47,7 +48,11 @@ ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
     if (step.kind != StepKind::kProgress) return;
     found.lines.push_back({step.line.begin, step.line.next, seconds, begun});
   };
-  MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
+  found.seconds = MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
+  if (deposits) {
+    found.deposited_seconds = found.seconds;
+    printed = found.lines.size();
+  }
   for (size_t i = 0; i < found.lines.size(); ++i) {
     found.lines[i].share /= std::max(found.seconds, 1e-9);
     found.lines[i].in_print = found.lines[i].in_print && i < printed;
@@ -83,7 +88,7 @@ class Mover {
         PassBy(step.line);
       }
       ++seen_;
-    } else if (deposits_ || ends || seconds >= is_.seconds) {
+    } else if (deposits_ || ends || seconds >= is_.deposited_seconds) {
       PutUpTo(step.line.begin, seconds);
     }
   }
@@ -157,7 +162,7 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
         SaysLayer(text.substr(line.begin, line.end - line.begin))) {
       continue;
     }
-    moments[i] = was.lines[i].share * is.seconds;
+    moments[i] = std::min(was.lines[i].share * is.seconds, is.deposited_seconds);
     any = true;
   }
   if (!any) return std::nullopt;

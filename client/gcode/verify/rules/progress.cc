@@ -13,9 +13,9 @@ namespace {
 // So many hundredths of the print farther off than in the original is little.
 constexpr double kSlackPercent = 2;
 
-// All is done where the last path ends.
-double PercentAt(const ProgressLog& log, double seconds) {
-  return log.seconds > 0 ? std::min(100 * seconds / log.seconds, 100.0) : 0;
+// All is done where the last path ends, or behind the end script: slicers say it either way.
+double PercentAt(double print_seconds, double seconds) {
+  return print_seconds > 0 ? std::min(100 * seconds / print_seconds, 100.0) : 0;
 }
 
 // When the section of `line` begins and ends: no line can leave it.
@@ -41,22 +41,41 @@ double Transferred(double seconds, const Span& from, const Span& to) {
   return to.begin + share * (to.end - to.begin);
 }
 
+// By how much a line is farther off than it may be, and where it stands.
+struct Displacement {
+  double excess = 0;  // in hundredths of the print; above 0: too far
+  double stated = 0;
+  double percent = 0;
+  double given = 0;
+};
+
 // Where one section saves more time than another, a line may be off as far as they differ. Lines
-// that state no share stay where they were.
+// that state no share stay where they were. The prints take `was_seconds` and `is_seconds`.
+Displacement DisplacementOf(const ProgressLog& was, double was_seconds, const ProgressLog& is,
+                            double is_seconds, size_t i) {
+  Displacement found;
+  found.given = PercentAt(was_seconds, was.lines[i].seconds);
+  found.percent = PercentAt(is_seconds, is.lines[i].seconds);
+  found.stated = was.lines[i].percent >= 0 ? was.lines[i].percent : found.given;
+  const double alike = PercentAt(
+      is_seconds,
+      Transferred(was.lines[i].seconds, SectionOf(was, was.lines[i]), SectionOf(is, is.lines[i])));
+  const double allowed = std::abs(found.given - found.stated) + kSlackPercent;
+  found.excess = std::min(std::abs(found.percent - found.stated) - allowed,
+                          std::abs(found.percent - alike) - kSlackPercent);
+  return found;
+}
+
 void ComparePlace(const ProgressLog& was, const ProgressLog& is, size_t i,
                   std::vector<Finding>& breaks) {
-  const double given = PercentAt(was, was.lines[i].seconds);
-  const double percent = PercentAt(is, is.lines[i].seconds);
-  const double stated = was.lines[i].percent >= 0 ? was.lines[i].percent : given;
-  const Span section = SectionOf(is, is.lines[i]);
-  const double alike =
-      PercentAt(is, Transferred(was.lines[i].seconds, SectionOf(was, was.lines[i]), section));
-  const double allowed = std::abs(given - stated) + kSlackPercent;
-  if (std::abs(percent - stated) <= allowed || std::abs(percent - alike) <= kSlackPercent) return;
+  const Displacement of_print = DisplacementOf(was, was.seconds, is, is.seconds, i);
+  if (of_print.excess <= 0) return;
+  const Displacement of_file = DisplacementOf(was, was.all_seconds, is, is.all_seconds, i);
+  if (of_file.excess <= 0) return;
   breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
                     absl::StrFormat("states %.0f %% at %.1f %% of the print time; in the original "
                                     "it stands at %.1f %%",
-                                    stated, percent, given)});
+                                    of_file.stated, of_file.percent, of_file.given)});
 }
 
 }  // namespace
@@ -65,6 +84,7 @@ void ProgressLog::Append(const TraceChunk& chunk) {
   lines.insert(lines.end(), chunk.progress.begin(), chunk.progress.end());
   begins.insert(begins.end(), chunk.begins.begin(), chunk.begins.end());
   if (!chunk.paths.empty()) seconds = chunk.paths.back().left_seconds;
+  all_seconds = chunk.seconds;
 }
 
 void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<Finding>& breaks) {

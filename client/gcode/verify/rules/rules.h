@@ -56,7 +56,8 @@ void ObserveBounds(const TraceChunk& was, Box& box);
 struct ProgressLog {
   std::vector<Progress> lines;
   std::vector<SectionBegin> begins;
-  double seconds = 0;  // of the whole print
+  double seconds = 0;      // up to the last deposit
+  double all_seconds = 0;  // of the whole file, with what its end script does
 
   void Append(const TraceChunk& chunk);
 };

@@ -176,6 +176,7 @@ struct TraceChunk {
   std::vector<TraceSection> sections;
   std::vector<TraceLayer> layers;
   uint32_t end_section = 0;  // index of the section behind the last one that is whole
+  double seconds = 0;        // since the file began, up to where the chunk ends: Clock
 
   Point StartOf(const TracePath& path, uint32_t segment) const {
     return segment == path.first_segment ? path.start : segments[segment - 1].end;

@@ -356,6 +356,7 @@ TraceChunk Tracer::TakeChunk(uint32_t end_section) {
   last.end_move = static_cast<uint32_t>(chunk_.moves.size());
   chunk_.links.push_back(last);
   chunk_.end_section = end_section;
+  chunk_.seconds = clock_.seconds();
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});
   MoveLater(end_section, taken.standstills, chunk_.standstills);
   MoveLater(end_section, taken.line_faults, chunk_.line_faults);

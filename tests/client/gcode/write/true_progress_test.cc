@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "tests/client/gcode/support/read_text.h"
 
@@ -86,6 +87,28 @@ TEST(WithTrueProgress, GoesToTheNearerSideOfATravel) {
   // Three seconds are to be over: it is two behind the second line, and six before the third.
   EXPECT_EQ(PrintedBefore(*moved, "M73 P50\n"), 2);
   EXPECT_EQ(PrintedBefore(*moved, "M73 Q50\n"), 2);
+}
+
+// What is told is a share of all, up to the end of the end script, but nothing is told behind what
+// is printed last.
+TEST(WithTrueProgress, CountsTheEndScript) {
+  const std::string away = "G1 X0 Y6 F600\nG1 X80 Y6 F600\n";  // 9 s
+  const auto file = Read(Travelling({0, 0, 0, 0, 0, 6}) + away);
+
+  const auto moved = WithTrueProgress(*file, Travelling({0, 0, 0, 0, 0, 0}) + away);
+
+  // Of 21 s 3 were over; that is 2.14 of 15.
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(PrintedBefore(*moved, "M73 P50\n"), 2);
+  // 11 of 21 s were over; 7.86 of 15 would be in the end script.
+  const auto late = [&](int seconds) {
+    std::string text = Travelling({0, 0, seconds, 0, 0, 0});
+    text.erase(text.find("M73 P50"), 16);
+    return text.insert(text.find("G1 F600\nG1 X10 Y5"), "M73 P90\n") + away;
+  };
+  const auto at_end = WithTrueProgress(*Read(late(6)), late(0));
+  ASSERT_TRUE(at_end);
+  EXPECT_TRUE(absl::StrContains(*at_end, "Y5 E.3\nM73 P90\nM107"));
 }
 
 // Between two long travel moves its own place is the nearest to its moment.

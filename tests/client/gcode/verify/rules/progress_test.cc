@@ -90,6 +90,25 @@ TEST(VerifyProgress, MayBeAsFarOffAsInTheOriginal) {
   EXPECT_EQ(Broken(a, Joined(lines), {}, kRules), "");
 }
 
+// Half of the file is its end script: a share may be one of either.
+TEST(VerifyProgress, MayCountTheEndScript) {
+  const auto print = [](int seconds, int before) {
+    std::string text = kHead;
+    for (int i = 0; i < 10; ++i) {
+      absl::StrAppend(&text, i == before ? "; elapsed time: 5\n" : "", "G1 X0 Y", 2 * i, " F",
+                      i == 9 ? 600.0 / seconds : 600000.0,
+                      "\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n");
+    }
+    return text + "G1 X160 F600\n";  // 15 s
+  };
+  const std::string a = print(6, 5);
+
+  EXPECT_EQ(Broken(a, print(1, 4), {}, RuleBit(VerifyRule::kProgress)), "");  // of the file
+  EXPECT_EQ(Broken(a, print(1, 3), {}, RuleBit(VerifyRule::kProgress)), "");  // of the print
+  EXPECT_EQ(Broken(a, print(1, 1), {}, RuleBit(VerifyRule::kProgress)), "progress");
+  EXPECT_EQ(Broken(a, print(1, 7), {}, RuleBit(VerifyRule::kProgress)), "progress");
+}
+
 TEST(VerifyProgress, MayStandBetweenTheSegmentsOfAPath) {
   const std::string line = "G1 X0 Y0 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
   const std::string path = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
