@@ -498,8 +498,8 @@ def tail_lines(side):
 
 # Commands that belong to a path and come and go with it.
 OF_PATHS = ("M204", "M205", "M201", "M203", "M566", "M207", "M215", "SET_VELOCITY_LIMIT", "M900", "M572", "M233",
-            "SET_PRESSURE_ADVANCE", "M221", "M106", "M107", "M73", "M117", "M118", "M532", "SET_DISPLAY_TEXT", "M486",
-            "M624", "M625", "EXCLUDE_OBJECT", "@")
+            "SET_PRESSURE_ADVANCE", "M221", "M220", "M593", "SET_INPUT_SHAPER", "SET_FAN_SPEED", "M106", "M107", "M73",
+            "M117", "M118", "M532", "SET_DISPLAY_TEXT", "M486", "M624", "M625", "EXCLUDE_OBJECT", "@")
 
 
 def commands(side, first, end):

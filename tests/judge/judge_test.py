@@ -54,7 +54,8 @@ class Checks(unittest.TestCase):
         self.assertIn("deposits", faults(self.towers, after))
 
     def test_another_setting_is_found(self):
-        for setting in ("M900 K0.{} L1000 M10", "M233 X0.{0} Y0.{0}", "M566 X{}", "M207 X{}", "M215 X{}", "M221 S{}"):
+        for setting in ("M900 K0.{} L1000 M10", "M233 X0.{0} Y0.{0}", "M566 X{}", "M207 X{}", "M215 X{}", "M221 S{}",
+                        "M593 F{}", "M220 S{}", "SET_FAN_SPEED FAN=aux SPEED=0.{}", "SET_INPUT_SHAPER SHAPER_FREQ_X={}"):
             before = HEAD + [setting.format(20)] + self.towers[len(HEAD):]
             at = before.index(";LAYER_CHANGE", len(HEAD) + 2)
             after = before[:at] + [setting.format(30)] + before[at:]

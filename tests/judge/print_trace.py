@@ -75,7 +75,10 @@ class Trace:
         return [move for move in self.moves if move.deposits]
 
 
-STATE = ("tool", "feed", "fan", "accel", "advance", "flow", "limit", "feature", "width", "object", "heat", "jerk")
+STATE = ("tool", "feed", "fan", "accel", "advance", "flow", "limit", "feature", "width", "object", "heat", "jerk", "named")
+# Settings of things with names, and the parameter or word that names them: each is compared by its whole line.
+NAMED_SETTINGS = {"SET_FAN_SPEED": "FAN", "SET_INPUT_SHAPER": "", "SET_LED": "LED", "SET_TMC_CURRENT": "STEPPER", "M593": "",
+                  "M150": "", "M220": ""}
 
 
 class Machine:
@@ -90,7 +93,7 @@ class Machine:
         self.now = 0.0
         self.state = dict.fromkeys(STATE, "")
         self.frozen = None
-        self.fans, self.jerk = {}, {}
+        self.fans, self.jerk, self.named = {}, {}, {}
         self.moves, self.progress, self.commands, self.labels = [], [], [], []
 
     def set(self, key, value):
@@ -188,6 +191,9 @@ class Machine:
             self.set("flow", words.get("S", ""))
         elif text.startswith("SET_VELOCITY_LIMIT"):
             self.set("limit", tuple(sorted(NAMED.findall(text))))
+        elif code in NAMED_SETTINGS:
+            self.named[code, dict(NAMED.findall(text)).get(NAMED_SETTINGS[code])] = text
+            self.set("named", tuple(sorted(self.named.values())))
         elif code == "M486" and "S" in words:
             self.label(number, str(int(words["S"])) if words["S"] >= 0 else None)
         elif text.startswith("EXCLUDE_OBJECT_START"):

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "absl/strings/str_cat.h"
 #include "client/gcode/dialects/dialect.h"
+#include "client/gcode/machine/named_setting.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -33,13 +35,21 @@ SlotMask FanSlots(Command& command) {
   const uint32_t others = command.words & ~(Command::Bit('S') | Command::Bit('P'));
   if (others != 0) return 0;
   const Decimal fan = command.Has('P') ? command.Value('P') / kDecimalOne : 0;
-  if (fan < 0 || fan > 3) return 0;
+  if (fan < 0) return 0;
+  if (fan > 3) return SlotOfName(absl::StrCat("M106 P", fan), true);
   return SlotBit(static_cast<Slot>(kSlotFan + fan));
 }
 
 SlotMask OnlyWord(Command& command, char letter, Slot slot) {
   if (!ReadWords(command) || command.words != Command::Bit(letter)) return 0;
   return SlotBit(slot);
+}
+
+// What a setting of the tool in use, or of the one that the value of `tool` names, sets: the latter
+// holds for itself, too.
+SlotMask OfTool(Command& command, SlotMask slots, char tool) {
+  if (slots == 0 || !command.Has(tool)) return slots;
+  return slots | SlotOfName(absl::StrCat("M", command.number, " ", command.Value(tool)), false);
 }
 
 // Repetier's, as CuraEngine writes it; elsewhere M207 says how G10 retracts, by S and F.
@@ -103,8 +113,10 @@ SlotMask CommandSlots(Command& command) {
       return RepetierJerkSlots(command);
     case 215:  // Cheetah's
       return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)}, {'Y', SlotBit(kSlotJerkY)}});
+    case 220:
+      return OnlyWord(command, 'S', kSlotSpeed);
     case 221:
-      return OnlyWord(command, 'S', kSlotFlow);
+      return OfTool(command, SlotsOfWords(command, {{'S', SlotBit(kSlotFlow)}, {'T', 0}}), 'T');
     case 233:  // Repetier's
       return SlotsOfWords(command, {{'X', SlotBit(kSlotPressure)}, {'Y', SlotBit(kSlotPressure)}});
     case 566:  // RepRapFirmware's
@@ -113,24 +125,46 @@ SlotMask CommandSlots(Command& command) {
                                     {'Z', SlotBit(kSlotJerkZ)},
                                     {'E', SlotBit(kSlotJerkE)}});
     case 572:
-      return SlotsOfWords(command, {{'S', SlotBit(kSlotPressure)}, {'D', 0}});
+      return OfTool(command, SlotsOfWords(command, {{'S', SlotBit(kSlotPressure)}, {'D', 0}}), 'D');
     case 900:  // L and M: Bambu Lab's; T: a tool
-      return SlotsOfWords(command, {{'K', SlotBit(kSlotPressure)}, {'L', 0}, {'M', 0}, {'T', 0}});
+      return OfTool(
+          command,
+          SlotsOfWords(command, {{'K', SlotBit(kSlotPressure)}, {'L', 0}, {'M', 0}, {'T', 0}}),
+          'T');
     default:
-      return 0;
+      return NamedCommandSlots(command);
   }
 }
 
-SlotMask TextSlots(std::string_view line) {
-  if (StartsWith(line, "SET_PRESSURE_ADVANCE ")) return SlotBit(kSlotPressure);
-  constexpr std::string_view kLimit = "SET_VELOCITY_LIMIT ";
-  if (!StartsWith(line, kLimit)) return 0;
+namespace {
+
+// The next of the blank-separated parameters, behind which `rest` goes on; empty at the end.
+std::string_view NextParameter(std::string_view& rest) {
+  rest = TrimBlanks(rest);
+  const std::string_view parameter = rest.substr(0, rest.find_first_of(" \t"));
+  rest.remove_prefix(parameter.size());
+  return parameter;
+}
+
+// Of the extruder in use, or of the one that is named, which holds for itself, too.
+SlotMask PressureSlots(std::string_view rest) {
   SlotMask slots = 0;
-  std::string_view rest = line.substr(kLimit.size());
-  while (!(rest = TrimBlanks(rest)).empty() && rest[0] != ';') {
-    const size_t blank = rest.find_first_of(" \t");
-    const std::string_view parameter = rest.substr(0, blank);
-    rest = blank == std::string_view::npos ? std::string_view{} : rest.substr(blank);
+  SlotMask of_extruder = 0;
+  for (std::string_view parameter; !(parameter = NextParameter(rest)).empty();) {
+    if (StartsWith(parameter, "SMOOTH_TIME=")) {
+      slots |= SlotOfName("SMOOTH_TIME", false);
+    } else if (StartsWith(parameter, "EXTRUDER=")) {
+      of_extruder = SlotOfName(parameter, false);
+    } else {
+      slots |= SlotBit(kSlotPressure);
+    }
+  }
+  return slots == 0 ? 0 : slots | of_extruder;
+}
+
+SlotMask LimitSlots(std::string_view rest) {
+  SlotMask slots = 0;
+  for (std::string_view parameter; !(parameter = NextParameter(rest)).empty();) {
     if (StartsWith(parameter, "ACCEL=")) {
       slots |= SlotBit(kSlotKlipperAccel);
     } else if (StartsWith(parameter, "ACCEL_TO_DECEL=") ||
@@ -145,6 +179,18 @@ SlotMask TextSlots(std::string_view line) {
     }
   }
   return slots;
+}
+
+}  // namespace
+
+SlotMask TextSlots(std::string_view line) {
+  const size_t end = std::min(line.find_first_of(" \t;"), line.size());
+  const std::string_view command = line.substr(0, end);
+  if (!StartsWith(command, "SET_")) return 0;
+  const std::string_view parameters = line.substr(end, std::min(line.find(';'), line.size()) - end);
+  if (command == "SET_PRESSURE_ADVANCE") return PressureSlots(parameters);
+  if (command == "SET_VELOCITY_LIMIT") return LimitSlots(parameters);
+  return NamedTextSlots(command, parameters);
 }
 
 uint32_t SetterTable::Intern(std::string_view line, SlotMask slots) {

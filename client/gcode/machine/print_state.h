@@ -51,12 +51,17 @@ enum Slot : uint8_t {
   kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL, MINIMUM_CRUISE_RATIO
   kSlotKlipperCorner,  // SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY
   kSlotKlipperSpeed,   // SET_VELOCITY_LIMIT VELOCITY
+  kSlotSpeed,          // M220
   kSlotPressure,       // M900, M572, M233, SET_PRESSURE_ADVANCE
   kSlotFlow,           // M221
-  kSlotCount,
+  // Settings with names of their own, such as fans and input shapers: each in the slot that
+  // its name falls to. Two that share one cannot both be restored, which the verifier finds.
+  kSlotNamedFan,
+  kSlotNamed = kSlotNamedFan + 4,
+  kSlotCount = kSlotNamed + 8,
 };
 
-using SlotMask = uint32_t;
+using SlotMask = uint64_t;
 
 constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
 
@@ -71,10 +76,11 @@ inline constexpr SlotMask kDynamicsSlots =
     SlotBit(kSlotMaxAccelE) | SlotBit(kSlotMaxSpeedX) | SlotBit(kSlotMaxSpeedY) |
     SlotBit(kSlotMaxSpeedZ) | SlotBit(kSlotMaxSpeedE) | SlotBit(kSlotJerkZ) | SlotBit(kSlotJerkE) |
     SlotBit(kSlotJunction) | SlotBit(kSlotKlipperAccel) | SlotBit(kSlotKlipperDecel) |
-    SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed);
+    SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed) | SlotBit(kSlotSpeed);
 
-inline constexpr SlotMask kFanSlots =
-    SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) | SlotBit(kSlotFan3);
+inline constexpr SlotMask kFanSlots = SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) |
+                                      SlotBit(kSlotFan3) |
+                                      (SlotBit(kSlotNamed) - SlotBit(kSlotNamedFan));
 
 // The slots that a line sets; 0 if it is not a setter. Reads the words of commands that may be one.
 SlotMask CommentSlots(std::string_view comment);

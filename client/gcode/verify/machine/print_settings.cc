@@ -15,6 +15,17 @@ uint64_t ValueOf(std::string_view comment) {
   return DigestOf(TrimLine(comment.substr(comment.find(':') + 1)));
 }
 
+// `words` has `word` between blanks.
+bool HasWord(std::string_view words, std::string_view word) {
+  for (size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
+    const size_t end = at + word.size();
+    if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) {
+      return !word.empty();
+    }
+  }
+  return false;
+}
+
 uint64_t WordOr0(const CommandWords& words, char letter) {
   return static_cast<uint64_t>(words.ValueOr(letter, 0));
 }
@@ -70,11 +81,48 @@ bool PrintSettings::SetByComment(std::string_view text) {
 
 bool PrintSettings::SetFan(int number, const CommandWords& words) {
   const Micro index = words.ValueOr('P', 0) / 1'000'000;
-  if (!words.OnlyFrom("SP") || index < 0 || index >= 4) return false;
-  const Micro speed = number == 107 ? 0 : words.ValueOr('S', 255'000'000);
-  Set(kFans + static_cast<size_t>(index), static_cast<uint64_t>(speed) + 1);
-  fan_ = Mix(Mix(values_[kFans], values_[kFans + 1]), Mix(values_[kFans + 2], values_[kFans + 3]));
+  if (!words.OnlyFrom("SP") || index < 0) return false;
+  const auto speed = static_cast<uint64_t>(number == 107 ? 0 : words.ValueOr('S', 255'000'000)) + 1;
+  if (index >= 4) {
+    return SetNamed({{{Mix(DigestOf("M106"), static_cast<uint64_t>(index)), true}, speed}});
+  }
+  Set(kFans + static_cast<size_t>(index), speed);
+  RenewFan();
   return true;
+}
+
+void PrintSettings::RenewFan() {
+  sets_fan_ = true;
+  fan_ = Mix(Mix(values_[kFans], values_[kFans + 1]), Mix(values_[kFans + 2], values_[kFans + 3]));
+  fan_ += NamedDigest(true);
+}
+
+// All of `values`, or none if there would be too many names.
+bool PrintSettings::SetNamed(const std::vector<NamedValue>& values) {
+  const auto place_of = [this](uint64_t key) {
+    const auto known = std::find_if(named_.begin(), named_.end(),
+                                    [key](const Named& named) { return named.key == key; });
+    return static_cast<size_t>(known - named_.begin());
+  };
+  for (const NamedValue& given : values) {
+    if (place_of(given.named.key) < named_.size()) continue;
+    if (named_.size() == kMostNamed) return false;
+    named_.push_back(given.named);
+  }
+  for (const NamedValue& given : values) {
+    Set(kSlots + place_of(given.named.key), given.value);
+    if (given.named.fan) RenewFan();
+  }
+  return true;
+}
+
+// In whatever order they were named.
+uint64_t PrintSettings::NamedDigest(bool of_fans) const {
+  uint64_t digest = 0;
+  for (size_t i = 0; i < named_.size(); ++i) {
+    if (!of_fans || named_[i].fan) digest += Mix(named_[i].key, values_[kSlots + i]);
+  }
+  return digest;
 }
 
 bool PrintSettings::SetByM(int number, const CommandWords& words) {
@@ -123,61 +171,177 @@ bool PrintSettings::SetByM(int number, const CommandWords& words) {
     SetWord(words, 'E', kLimits + 5);
     return true;
   }
-  if (number == 221 && words.OnlyFrom("S")) {
-    SetWord(words, 'S', kFlow);
-  } else if (number == 900 && words.Has('K') && words.OnlyFrom("KLMT")) {
-    // Bambu Lab's L and M belong to what K says.
-    Set(kPressure, Mix(Mix(static_cast<uint64_t>(words['K']), WordOr0(words, 'L')),
-                       Mix(WordOr0(words, 'M'), WordOr0(words, 'T'))));
-  } else if (number == 233 && words.OnlyFrom("XY")) {
-    Set(kPressure, Mix(WordOr0(words, 'X'), WordOr0(words, 'Y')));
-  } else if (number == 572 && words.OnlyFrom("SD") && words.Has('S')) {
-    SetWord(words, 'S', kPressure);
-  } else {
-    return false;
+  if (number == 220 && words.OnlyFrom("S")) {
+    SetWord(words, 'S', kSpeed);
+    return true;
   }
+  if (number == 221 && words.Has('S') && words.OnlyFrom("ST")) {
+    return SetOfTool(number, words, 'T', kFlow);
+  }
+  // Bambu Lab's L and M belong to what K says.
+  if (number == 900 && words.Has('K') && words.OnlyFrom("KLMT")) {
+    return SetOfTool(number, words, 'T', kPressure);
+  }
+  if (number == 572 && words.Has('S') && words.OnlyFrom("SD")) {
+    return SetOfTool(number, words, 'D', kPressure);
+  }
+  if (number == 233 && words.OnlyFrom("XY")) {
+    Set(kPressure, Mix(WordOr0(words, 'X'), WordOr0(words, 'Y')));
+    return true;
+  }
+  return SetNamedByM(number, words);
+}
+
+// For the tool in use, or for that which the word `tool` names: what it is told stays with it, too.
+bool PrintSettings::SetOfTool(int number, const CommandWords& words, char tool, size_t slot) {
+  uint64_t value = static_cast<uint64_t>(number);
+  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+    if (words.Has(letter))
+      value = Mix(Mix(value, static_cast<uint64_t>(letter)), WordOr0(words, letter));
+  }
+  const uint64_t of = Mix(static_cast<uint64_t>(number), WordOr0(words, tool));
+  if (words.Has(tool) && !SetNamed({{{Mix(DigestOf("tool"), of)}, value}})) return false;
+  Set(slot, value);
   return true;
 }
 
-bool PrintSettings::SetByKlipper(std::string_view text) {
-  if (Begins(text, "SET_PRESSURE_ADVANCE ")) {
-    Set(kPressure, DigestOf(text));
-    return true;
+// Lights; input shaping, of both axes or of those that are named.
+bool PrintSettings::SetNamedByM(int number, const CommandWords& words) {
+  const auto known = [number](uint64_t what) {
+    return Mix(Mix(DigestOf("named M"), static_cast<uint64_t>(number)), what);
+  };
+  const auto value = [&words](char letter) { return WordOr0(words, letter) + 1; };
+  if (number == 960 && words.OnlyFrom("SP") && words.Has('P') && words.Has('S')) {
+    return SetNamed({{{known(WordOr0(words, 'S'))}, value('P')}});
   }
-  constexpr std::string_view kLimit = "SET_VELOCITY_LIMIT ";
-  if (!Begins(text, kLimit)) return false;
-  std::vector<std::pair<size_t, uint64_t>> settings;
-  std::string_view rest = TrimLine(text.substr(kLimit.size(), text.find(';') - kLimit.size()));
+  const std::string_view letters = number == 150   ? "RUWPB"
+                                   : number == 355 ? "SP"
+                                   : number == 593 ? "FD"
+                                                   : "";
+  if (letters.empty() || !words.OnlyFrom(number == 593 ? "FDXY" : letters)) return false;
+  std::vector<NamedValue> values;
+  for (const char letter : letters) {
+    if (!words.Has(letter)) continue;
+    for (const char axis : {'X', 'Y'}) {
+      const bool all = number != 593 || words.Has('X') == words.Has('Y');
+      if (!all && !words.Has(axis)) continue;
+      const auto what = static_cast<uint64_t>(letter) * 256 + static_cast<uint64_t>(axis);
+      values.push_back({{known(what)}, value(letter)});
+    }
+  }
+  return !values.empty() && SetNamed(values);
+}
+
+// `NAME=VALUE NAME=VALUE ; comment`; unset where it is written otherwise.
+std::optional<PrintSettings::Parameters> PrintSettings::ParametersIn(std::string_view text) {
+  Parameters parameters;
+  std::string_view rest = TrimLine(text.substr(0, text.find(';')));
   while (!rest.empty()) {
     const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
     rest = TrimLine(rest.substr(word.size()));
-    const size_t equals = std::min(word.find('='), word.size());
-    const std::string_view name = word.substr(0, equals);
-    const uint64_t value = DigestOf(word.substr(equals));
-    if (name == "ACCEL") {
-      settings.emplace_back(kKlipperAccel, value);
-    } else if (name == "ACCEL_TO_DECEL" || name == "MINIMUM_CRUISE_RATIO") {
-      settings.emplace_back(kKlipperDecel, value);
-    } else if (name == "SQUARE_CORNER_VELOCITY") {
-      settings.emplace_back(kKlipperCorner, value);
-    } else if (name == "VELOCITY") {
-      settings.emplace_back(kKlipperSpeed, value);
+    const size_t equals = word.find('=');
+    if (equals == std::string_view::npos) return std::nullopt;
+    parameters.emplace_back(word.substr(0, equals), DigestOf(word.substr(equals)));
+  }
+  return parameters;
+}
+
+bool PrintSettings::SetByKlipper(std::string_view text) {
+  const size_t end = std::min(text.find_first_of(" \t;"), text.size());
+  const std::string_view command = text.substr(0, end);
+  const bool known = Begins(command, "SET_");
+  const auto parameters = known ? ParametersIn(text.substr(end)) : std::nullopt;
+  if (!parameters) return false;
+  if (command == "SET_PRESSURE_ADVANCE") return SetPressure(*parameters);
+  if (command == "SET_VELOCITY_LIMIT") return SetLimits(*parameters);
+  return SetNamedByKlipper(command, *parameters);
+}
+
+// Of the extruder in use, or of the one that is named: what it is told stays with it, too.
+bool PrintSettings::SetPressure(const Parameters& parameters) {
+  uint64_t extruder = 0;
+  for (const auto& [name, value] : parameters) {
+    if (name == "EXTRUDER") extruder = value;
+  }
+  std::vector<NamedValue> named;
+  uint64_t advance = 0;
+  for (const auto& [name, value] : parameters) {
+    if (name == "EXTRUDER") continue;
+    if (name == "SMOOTH_TIME") {
+      named.push_back({{DigestOf(name)}, Mix(extruder, value)});
     } else {
-      return false;
+      advance = Mix(Mix(advance, extruder), Mix(DigestOf(name), value));
     }
+    if (extruder != 0) named.push_back({{Mix(extruder, DigestOf(name))}, value});
+  }
+  if ((advance == 0 && named.empty()) || !SetNamed(named)) return false;
+  if (advance != 0) Set(kPressure, advance);
+  return true;
+}
+
+bool PrintSettings::SetLimits(const Parameters& parameters) {
+  constexpr std::pair<std::string_view, size_t> kNames[] = {
+      {"ACCEL", kKlipperAccel},
+      {"ACCEL_TO_DECEL", kKlipperDecel},
+      {"MINIMUM_CRUISE_RATIO", kKlipperDecel},
+      {"SQUARE_CORNER_VELOCITY", kKlipperCorner},
+      {"VELOCITY", kKlipperSpeed},
+  };
+  std::vector<std::pair<size_t, uint64_t>> settings;
+  for (const auto& parameter : parameters) {
+    const auto known =
+        std::find_if(std::begin(kNames), std::end(kNames),
+                     [&parameter](const auto& entry) { return entry.first == parameter.first; });
+    if (known == std::end(kNames)) return false;
+    settings.emplace_back(known->second, parameter.second);
   }
   for (const auto& [slot, value] : settings) Set(slot, value);
   return true;
 }
 
+// Each parameter of what has that name is a setting of its own.
+bool PrintSettings::SetNamedByKlipper(std::string_view command, const Parameters& parameters) {
+  struct Kind {
+    std::string_view command;
+    std::string_view name;
+    bool fan;
+    std::string_view sets;
+  };
+  constexpr Kind kKinds[] = {
+      {"SET_FAN_SPEED", "FAN", true, "SPEED"},
+      {"SET_LED", "LED", false, "RED GREEN BLUE WHITE SYNC TRANSMIT"},
+      {"SET_TMC_CURRENT", "STEPPER", false, "CURRENT HOLDCURRENT"},
+      {"SET_INPUT_SHAPER", "", false,
+       "SHAPER_FREQ_X SHAPER_FREQ_Y SHAPER_TYPE SHAPER_TYPE_X SHAPER_TYPE_Y DAMPING_RATIO_X "
+       "DAMPING_RATIO_Y"},
+  };
+  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                 [command](const Kind& one) { return one.command == command; });
+  if (kind == std::end(kKinds)) return false;
+  uint64_t of = DigestOf(command);
+  bool named = kind->name.empty();
+  for (const auto& [name, value] : parameters) {
+    if (name != kind->name) continue;
+    of = Mix(of, value);
+    named = true;
+  }
+  std::vector<NamedValue> values;
+  for (const auto& [name, value] : parameters) {
+    if (name == kind->name) continue;
+    if (!HasWord(kind->sets, name)) return false;
+    values.push_back({{Mix(of, DigestOf(name)), kind->fan}, value});
+  }
+  return named && !values.empty() && SetNamed(values);
+}
+
 uint64_t PrintSettings::SettingsDigest() const {
-  uint64_t digest = 0;
+  uint64_t digest = NamedDigest(false);
   for (size_t i = kFans; i < kSlots; ++i) digest = Mix(digest, values_[i]);
   return digest;
 }
 
 void PrintSettings::Renew() {
-  digest_ = 0;
+  digest_ = NamedDigest(false);
   for (size_t i = 0; i < kAccelTravel; ++i) digest_ = Mix(digest_, values_[i]);
   path_acceleration_digest_ = 0;
   for (size_t i = kAccelPrint; i < kPressure; ++i) {

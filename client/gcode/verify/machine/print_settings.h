@@ -6,7 +6,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "client/gcode/verify/machine/command_words.h"
 #include "client/gcode/verify/text.h"
@@ -28,11 +31,14 @@ class PrintSettings {
   // What is set so is compared with what held since the last call of Move.
   void Move() { ++motions_; }
 
-  // A new line begins: sets_back() is false.
-  void BeginLine() { sets_back_ = false; }
+  // A new line begins: sets_back() and sets_fan() are false.
+  void BeginLine() { sets_back_ = sets_fan_ = false; }
 
   // The line gave a setting a value that it had, and lost, since the last move.
   bool sets_back() const { return sets_back_; }
+
+  // The line set a fan, to whatever value.
+  bool sets_fan() const { return sets_fan_; }
 
   // Of all that deposits depend on.
   uint64_t Digest() {
@@ -75,11 +81,29 @@ class PrintSettings {
     kKlipperDecel,
     kKlipperCorner,
     kKlipperSpeed,
+    kSpeed,
     kPressure,
     kFlow,
     kAccelTravel,  // from here on what no deposit depends on
     kAccelRetract,
-    kSlots,
+    kSlots,  // and from here on what has a name of its own, such as fans and input shapers
+  };
+
+  // Of a line of Klipper: their names, and digests of their values.
+  using Parameters = std::vector<std::pair<std::string_view, uint64_t>>;
+
+  static constexpr size_t kMostNamed = 32;
+
+  // What has a name of its own: a digest of that, of the command and of what it sets.
+  struct Named {
+    uint64_t key = 0;
+    bool fan = false;
+  };
+
+  // A value to be given to what is called `named`.
+  struct NamedValue {
+    Named named;
+    uint64_t value = 0;
   };
 
   // The values that a setting had since a move; four are enough to find out that one came back.
@@ -92,10 +116,20 @@ class PrintSettings {
   void Set(size_t slot, uint64_t value);
   void SetWord(const CommandWords& words, char letter, size_t slot);
   bool SetFan(int number, const CommandWords& words);
+  bool SetOfTool(int number, const CommandWords& words, char tool, size_t slot);
+  bool SetNamed(const std::vector<NamedValue>& values);
+  bool SetNamedByM(int number, const CommandWords& words);
+  bool SetNamedByKlipper(std::string_view command, const Parameters& parameters);
+  bool SetPressure(const Parameters& parameters);
+  bool SetLimits(const Parameters& parameters);
+  static std::optional<Parameters> ParametersIn(std::string_view text);
+  uint64_t NamedDigest(bool of_fans) const;
+  void RenewFan();
   void Renew();
 
-  std::array<uint64_t, kSlots> values_{};
-  std::array<Held, kSlots> held_{};
+  std::array<uint64_t, kSlots + kMostNamed> values_{};
+  std::array<Held, kSlots + kMostNamed> held_{};
+  std::vector<Named> named_;          // [slot - kSlots]
   uint64_t digest_ = 0;               // of values_, unless changed_
   uint64_t acceleration_digest_ = 0;  // the same
   uint64_t path_acceleration_digest_ = 0;
@@ -103,6 +137,7 @@ class PrintSettings {
   uint64_t fan_ = 0;
   uint64_t motions_ = 1;
   bool sets_back_ = false;
+  bool sets_fan_ = false;
 };
 
 }  // namespace traverse::gcode

@@ -140,6 +140,7 @@ void VerifyMachine::Do(VerifyLine& line) {
   }
   line.sets = line.command != 0 && line.role == LineRole::kNothing;
   line.sets_back = settings_.sets_back();
+  line.sets_fan = settings_.sets_fan();
 }
 
 void VerifyMachine::DoComment(VerifyLine& line) {

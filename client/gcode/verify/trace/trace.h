@@ -47,7 +47,7 @@ struct TracePath {
   Micro feed = 0;             // of its last segment
   uint64_t fan = 0;           // VerifyMachine::fan at its first segment
   uint64_t acceleration = 0;  // VerifyMachine::PathAccelerationDigest there
-  bool states_fan = false;    // M106 or M107 stands before it, behind the path before
+  bool states_fan = false;    // a fan is set before it, behind the path before
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // part of it is of class kOverhang
   bool outer = false;      // part of it is of class kOuterWall

@@ -128,7 +128,7 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     TakeMove(line, machine, section);
   }
   const auto number = static_cast<uint32_t>(line.number);
-  states_fan_ |= line.sets && (Begins(line.text, "M106") || Begins(line.text, "M107"));
+  states_fan_ |= line.sets_fan;
   if (line.role == LineRole::kDeposit || line.role == LineRole::kFence ||
       line.role == LineRole::kFixed) {
     last_held_line_ = number;

@@ -70,6 +70,26 @@ TEST(PathSettings, GoWithTheirPath) {
       {"M566 X300 Y300\n", "M566 X600 Y600\n"},      // for RepRapFirmware
       {"M215 X8000 Y8000\n", "M215 X9000 Y9000\n"},  // for Cheetah
       {"M221 S95\n", "M221 S100\n"},
+      {"M221 T0 S95\n", "M221 T0 S100\n"},
+      {"M220 S90\n", "M220 S100\n"},
+      {"M593 F40\n", "M593 F50\n"},
+      {"M593 X F40 D0.1\n", "M593 X F50 D0.1\n"},
+      {"SET_INPUT_SHAPER SHAPER_FREQ_X=40 SHAPER_TYPE=mzv\n",
+       "SET_INPUT_SHAPER SHAPER_FREQ_X=50 SHAPER_TYPE=mzv\n"},
+      {"SET_FAN_SPEED FAN=aux SPEED=0.5\n", "SET_FAN_SPEED FAN=aux SPEED=1\n"},
+      {"M106 P5 S100\n", "M106 P5 S200\n"},
+      {"SET_LED LED=case RED=1 GREEN=0\n", "SET_LED LED=case RED=0 GREEN=1\n"},
+      {"M150 R9 U0\n", "M150 R0 U9\n"},
+      {"SET_TMC_CURRENT STEPPER=extruder CURRENT=0.5\n",
+       "SET_TMC_CURRENT STEPPER=extruder CURRENT=0.7\n"},
+      {"SET_PRESSURE_ADVANCE ADVANCE=0.03; Override pressure advance\n",
+       "SET_PRESSURE_ADVANCE ADVANCE=0.05; Override pressure advance\n"},  // OrcaSlicer's adaptive
+                                                                           // one
+      {"SET_VELOCITY_LIMIT ACCEL=500;a b\n", "SET_VELOCITY_LIMIT ACCEL=900 ;a b\n"},
+      {"SET_FAN_SPEED FAN=aux SPEED=0.5;a b\n", "SET_FAN_SPEED FAN=aux SPEED=1 ;a b\n"},
+      {"SET_PRESSURE_ADVANCE SMOOTH_TIME=0.02\n", "SET_PRESSURE_ADVANCE SMOOTH_TIME=0.04\n"},
+      {"SET_PRESSURE_ADVANCE EXTRUDER=extruder ADVANCE=0.02\n",
+       "SET_PRESSURE_ADVANCE EXTRUDER=extruder1 ADVANCE=0.02\n"},
       {"M203 X100 Y100\n", "M203 X200 Y200\n"},
       {"M203 X100 Y100 Z10 E50\n", "M203 X200 Y200 Z10 E60\n"},
       {"M205 X5 Y5\n", "M205 X8 Y8\n"},
@@ -94,8 +114,41 @@ TEST(PathSettings, GoWithTheirPath) {
 
 // One that firmware retracts by, and one that sets nothing, hold what stands beside them.
 TEST(PathSettings, WithOtherWordsTheyAreOtherCommands) {
-  for (const char* line : {"M207 S0.8 F2100\n", "M207 Z0.4\n", "M900 L0.5\n", "M566 P1\n"}) {
+  for (const char* line :
+       {"M207 S0.8 F2100\n", "M207 Z0.4\n", "M900 L0.5\n", "M566 P1\n", "M220 B\n", "M593 R4\n",
+        "SET_FAN_SPEED SPEED=1\n", "SET_INPUT_SHAPER\n", "SET_LED LED=a INDEX=2 RED=1\n",
+        "SET_PRESSURE_ADVANCE\n", "M400 U1\n"}) {
     EXPECT_EQ(Up(Lines({line, line})).layers_changed, 0) << line;
+  }
+}
+
+// What one extruder, or one axis, was told holds on where another is told something.
+TEST(PathSettings, HoldForWhatTheyName) {
+  struct Case {
+    const char* own;
+    const char* others;
+    const char* own_changed;
+  };
+  for (const Case& one :
+       {Case{"SET_PRESSURE_ADVANCE EXTRUDER=a ADVANCE=0.02\n",
+             "SET_PRESSURE_ADVANCE EXTRUDER=b ADVANCE=0.02\n",
+             "SET_PRESSURE_ADVANCE EXTRUDER=a ADVANCE=0.03\n"},
+        Case{"M572 D0 S0.02\n", "M572 D1 S0.02\n", "M572 D0 S0.03\n"},
+        Case{"M593 X F40\n", "M593 Y F40\n", "M593 X F50\n"},
+        Case{"SET_FAN_SPEED FAN=a SPEED=1\n", "SET_FAN_SPEED FAN=b SPEED=1\n",
+             "SET_FAN_SPEED FAN=a SPEED=0\n"},
+        Case{"SET_LED LED=a RED=1\n", "SET_LED LED=a GREEN=1\n", "SET_LED LED=a RED=0\n"}}) {
+    const std::string line = "G1 F1200\nG1 X10 Y0 E.5\n";
+    const std::string head = "M83\n;LAYER_CHANGE\nG1 X0 Y0 Z.2 F9000\n";
+    const std::string text = absl::StrCat(head, one.own, one.others, line);
+    const std::string other = absl::StrCat(head, one.own_changed, one.others, line);
+
+    EXPECT_TRUE(VerifyGcode(text, "a", text, "b", {}).ok()) << one.own;
+    EXPECT_FALSE(VerifyGcode(text, "a", other, "b", {}).ok()) << one.own;
+    const std::string turned = absl::StrCat(head, one.others, one.own, line);
+    const bool last_counts =
+        absl::StrContains(one.own, "PRESSURE") || absl::StartsWith(one.own, "M572");
+    EXPECT_EQ(VerifyGcode(text, "a", turned, "b", {}).ok(), !last_counts) << one.own;
   }
 }
 

@@ -126,7 +126,7 @@ TEST(Interpreter, WhatSaysHowFarThePrintIs) {
 }
 
 TEST(Interpreter, WhatItDoesNotKnowIsUnknown) {
-  for (const char* line : {"M600", "G4 P100", "G28", "M400", "PARK_HEAD", "M220 S50", "M204 P5 Q7",
+  for (const char* line : {"M600", "G4 P100", "G28", "M400", "PARK_HEAD", "M220 B", "M204 P5 Q7",
                            "SET_VELOCITY_LIMIT ACCEL=500 SOMETHING=1", "G1 X5 A3", "G5 X1 Y1",
                            "M205 X8 S0", "M106 P9 S255"}) {
     EXPECT_EQ(LastKind(line), StepKind::kUnknown) << line;
