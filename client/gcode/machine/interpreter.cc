@@ -100,14 +100,12 @@ bool Interpreter::Next(Step& step) {
       behind_pull_ = false;
       step.kind = KindOfText(TrimBlanks(line), step.slots);
       break;
-    case LineKind::kCommand: {
-      const bool waits = behind_pull_ && step.command.Is('G', 4);
+    case LineKind::kCommand:
       FollowCommand(step);
-      if (waits) step.kind = StepKind::kDwell;
+      if (step.kind == StepKind::kDwell) break;
       behind_pull_ = step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
                      step.kind == StepKind::kFirmwareUnretract;
       break;
-    }
   }
   return true;
 }
@@ -133,6 +131,9 @@ void Interpreter::FollowG(Step& step) {
     case 2:
     case 3:
       return Arc(step);
+    case 4:
+      step.kind = KindOfWait();
+      return;
     case 10:
     case 11: {
       // With words G10 is something else: temperatures in RepRapFirmware, offsets elsewhere.
@@ -210,6 +211,9 @@ void Interpreter::FollowM(Step& step) {
     case 117:
     case 118:
       step.kind = IsProgressMessage(step.command.rest) ? StepKind::kProgress : StepKind::kStay;
+      return;
+    case 400:  // waits for the moves before it, and does nothing else
+      step.kind = TrimBlanks(step.command.rest).empty() ? KindOfWait() : StepKind::kUnknown;
       return;
     case 622:
     case 623:
@@ -321,6 +325,32 @@ Offset Interpreter::LiftsUntil(Offset next) const {
     lifts = lifts || lift;
   }
   return 0;
+}
+
+StepKind Interpreter::KindOfWait() const {
+  return behind_pull_ || PullsNext() ? StepKind::kDwell : StepKind::kUnknown;
+}
+
+bool Interpreter::PullsNext() const {
+  constexpr int kMostLines = 8;
+  Command command;
+  Offset next = next_;
+  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
+    const Line line = LineAt(text_, next);
+    LexLine(line.Text(text_), command);
+    next = line.next;
+    if (command.kind == LineKind::kText) return false;
+    if (command.kind != LineKind::kCommand || command.Is('G', 4) || command.Is('M', 400)) continue;
+    const bool bare = TrimBlanks(command.rest).empty();
+    const bool moves = command.Is('G', 0) || command.Is('G', 1);
+    if (!moves || !command.Has('E')) {
+      return bare && (command.Is('G', 10) || command.Is('G', 11));
+    }
+    constexpr uint32_t kOfPulls = Command::Bit('E') | Command::Bit('F');
+    const Decimal before = state_.RelativeE() ? 0 : state_.e;
+    return (command.words & ~kOfPulls) == 0 || command.Value('E') < before;
+  }
+  return false;
 }
 
 Offset Interpreter::ConditionUntil(Offset next) const {

@@ -130,13 +130,16 @@ class Interpreter {
   // The end of `M622 J1` and what it makes depend on a state of the machine, up to M623, if nothing
   // of that moves or sets anything; otherwise 0.
   Offset ConditionUntil(Offset next) const;
+  // The next command, but for waiting, moves filament alone or pulls it back.
+  bool PullsNext() const;
+  StepKind KindOfWait() const;
   void SwitchUnits();
 
   std::string_view text_;
   Offset next_;
   Offset lifts_until_ = 0;      // the end of the relative lift that was found last
   Offset condition_until_ = 0;  // the end of the condition that was found last
-  bool behind_pull_ = false;    // the command before this one moved filament alone
+  bool behind_pull_ = false;    // the command before this one, but for waiting, was such a move
   MachineState state_;
 };
 

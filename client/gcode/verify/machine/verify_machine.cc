@@ -133,7 +133,7 @@ void VerifyMachine::Do(VerifyLine& line) {
     if (!moving && !InLift()) line.command = Mix('G', static_cast<uint64_t>(number));
   } else if (letter == 'M' && numbered) {
     DoM(number, line);
-    if (!InLift()) line.command = Mix('M', static_cast<uint64_t>(number));
+    if (!InLift() && !line.moves) line.command = Mix('M', static_cast<uint64_t>(number));
   } else {
     DoKlipper(line);
     line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
@@ -207,11 +207,8 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       firmware_retracted_ = number == 10;
       return;
     case 4:
-      if (!waits_ || !words.OnlyFrom("PS")) return Fence(line, LineRole::kFixed);
-      NoteMotion(number, 0, at_, 0);
-      motion_.feed = words.ValueOr('P', 0) + 1000 * words.ValueOr('S', 0);
-      line.moves = true;
-      return;
+      if (!words.OnlyFrom("PS")) return Fence(line, LineRole::kFixed);
+      return Wait(words.ValueOr('P', 0) + 1000 * words.ValueOr('S', 0), line);
     case 17:
       // Slicers write it before each spiral lift.
       if (plane_xy_) return;
@@ -233,6 +230,39 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     default:
       return Fence(line, LineRole::kFixed);
   }
+}
+
+// Beside a move that pulls filament back, or pushes it alone, it goes with that.
+void VerifyMachine::Wait(Micro milliseconds, VerifyLine& line) {
+  if (!waits_ && !PullsBehind()) return Fence(line, LineRole::kFixed);
+  NoteMotion(4, 0, at_, 0);
+  motion_.feed = milliseconds;
+  line.moves = true;
+  pulls_ = waits_;
+}
+
+bool VerifyMachine::PullsBehind() const {
+  constexpr size_t kMostLines = 8;
+  std::string_view rest = rest_;
+  for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = TrimLine(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.find('\r') != std::string_view::npos) return false;
+    if (line.empty() || line[0] == ';') continue;
+    const char letter = UpperCase(line[0]);
+    int number = -1;
+    std::from_chars(line.data() + 1, line.data() + line.size(), number);
+    const CommandWords words(WordsOf(line));
+    const bool waits = (letter == 'G' && number == 4) || (letter == 'M' && number == 400);
+    if (waits) continue;
+    if (letter != 'G' || !words.readable) return false;
+    if (number == 10 || number == 11) return words.set == 0;
+    if (number > 1 || number < 0 || !words.Has('E')) return false;
+    const Nano pushed = words.filament - (relative_ || relative_e_ ? 0 : e_);
+    return pushed < 0 || words.OnlyFrom("EF");
+  }
+  return false;
 }
 
 void VerifyMachine::SetPosition(const CommandWords& words, VerifyLine& line) {
@@ -400,6 +430,7 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
     return Fence(line, LineRole::kProgress);
   }
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
+  if (number == 400 && CommandWords(WordsOf(line.text)).set == 0) return Wait(0, line);
   if (number == 622) in_condition_ = ConditionOnlyTells();
   const bool conditional = number == 622 || number == 623;
   if (conditional && in_condition_) return Fence(line, LineRole::kFence);

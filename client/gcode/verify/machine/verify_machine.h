@@ -125,6 +125,8 @@ class VerifyMachine {
   // that is stated again; 0: other lines follow.
   size_t LinesOfLift() const;
   bool ConditionOnlyTells() const;
+  bool PullsBehind() const;  // so does the next command, without waiting
+  void Wait(Micro milliseconds, VerifyLine& line);
   bool InLift() const { return number_ <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
@@ -135,7 +137,7 @@ class VerifyMachine {
   size_t number_ = 0;
   size_t moved_at_ = 0;        // the line of motion_
   bool pulls_ = false;         // the line moves filament alone
-  bool waits_ = false;         // the command before it did
+  bool waits_ = false;         // the command before it did, or what stands before waiting
   size_t last_of_lift_ = 0;    // the line behind a lift in relative mode
   bool in_condition_ = false;  // of M622, up to M623, with nothing in it that moves or sets
   uint32_t line_ends_ = 0;

@@ -128,7 +128,7 @@ TEST(Interpreter, WhatSaysHowFarThePrintIs) {
 TEST(Interpreter, WhatItDoesNotKnowIsUnknown) {
   for (const char* line : {"M600", "G4 P100", "G28", "M400", "PARK_HEAD", "M220 B", "M204 P5 Q7",
                            "SET_VELOCITY_LIMIT ACCEL=500 SOMETHING=1", "G1 X5 A3", "G5 X1 Y1",
-                           "M205 X8 S0", "M106 P9 S255"}) {
+                           "M205 X8 S0", "M106 P-9 S255"}) {
     EXPECT_EQ(LastKind(line), StepKind::kUnknown) << line;
   }
 }
@@ -195,11 +195,23 @@ TEST(Interpreter, LiftsMayBeRelative) {
   }
 }
 
-TEST(Interpreter, WaitsBelongToTheRetractionsThatTheyFollow) {
+TEST(Interpreter, WaitsBelongToTheRetractionsBesideThem) {
+  const auto first = [](const std::string& text) { return Kinds(text).front(); };
   EXPECT_EQ(LastKind("G1 E-1\nG4 P50"), StepKind::kDwell);
   EXPECT_EQ(LastKind("G11\n\nG4 P50"), StepKind::kDwell);
+  EXPECT_EQ(LastKind("G1 E-1\nM400"), StepKind::kDwell);
+  EXPECT_EQ(LastKind("G1 E-1\nM400\nG4 P50"), StepKind::kDwell);
+  for (const char* wait : {"G4 P50\n", "M400\n", "M400\n\n; note\nG4 P50\n"}) {
+    EXPECT_EQ(first(std::string(wait) + "G1 E-1 F2100"), StepKind::kDwell) << wait;
+    EXPECT_EQ(first(std::string(wait) + "G10"), StepKind::kDwell) << wait;
+    EXPECT_EQ(first(std::string(wait) + "G1 X5 E-1"), StepKind::kDwell) << wait;
+    EXPECT_EQ(first(std::string(wait) + "G1 X5"), StepKind::kUnknown) << wait;
+    EXPECT_EQ(first(std::string(wait) + "G1 X5 E1"), StepKind::kUnknown) << wait;
+    EXPECT_EQ(first(std::string(wait) + "PAUSE\nG1 E-1"), StepKind::kUnknown) << wait;
+  }
   EXPECT_EQ(LastKind("G1 E-1\nG1 X5\nG4 P50"), StepKind::kUnknown);
-  EXPECT_EQ(LastKind("G1 E-1\nG4 P50\nG4 P50"), StepKind::kUnknown);
+  EXPECT_EQ(LastKind("G1 E-1\nG1 X5\nM400"), StepKind::kUnknown);
+  EXPECT_EQ(LastKind("G1 E-1\nM400 U1"), StepKind::kUnknown);
 }
 
 }  // namespace
