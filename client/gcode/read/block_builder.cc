@@ -321,8 +321,9 @@ void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
       link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
     if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
-    // Such a move leads to another layer, or is a script's.
-    if (link_.relative_rise != 0) link_.flags |= kLinkFixed;
+    // Such moves lead to another layer, or are a script's. Those to a scarf seam lead below the
+    // height of its layer.
+    if (link_.relative_rise != 0 && new_layer) link_.flags |= kLinkFixed;
   }
   const bool departs =
       link_.xy_moves > 1 && link_.first_move_mm > 0 && link_.first_move_mm <= kMaxDepartureMm;

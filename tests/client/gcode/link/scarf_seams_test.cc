@@ -75,8 +75,13 @@ const Travel kOpen = {"", "", "G1 ZLOW\n"};
 const Travel kRelative = {"G1 E-.8 F2100\nG91\nG1 Z.4 F9000\nG90\nM83\n", "",
                           "G91\nG1 Z-.4 F9000\nG90\nM83\nG1 E.8 F2100\nG1 ZLOW F9000\n"};
 
+// Lifted relatively, but lowered by heights; and lowered relatively.
+const Travel kMixed = {"G1 E-.8 F2100\nG91\nG1 Z.4 F9000\nG90\n", "",
+                       "G1 ZLOW F9000\nG1 E.8 F2100\n"};
+const Travel kLowered = {"G1 E-.8 F2100\n", "", "G91\nG1 Z-.9 F9000\nG90\nG1 E.8 F2100\n"};
+
 TEST(ScarfSeams, ChangePlaces) {
-  for (const Travel& travel : {kLifted, kSinking, kOpen, kRelative}) {
+  for (const Travel& travel : {kLifted, kSinking, kOpen, kRelative, kMixed, kLowered}) {
     const std::string text = Seams(travel);
     const GcodeRewrite rewrite = InOrder(text, {0, 2, 3, 1});
 
