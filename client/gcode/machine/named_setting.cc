@@ -21,29 +21,31 @@ struct KlipperSetting {
   std::string_view command;
   std::string_view name;        // the parameter that names what is set; empty if none does
   std::string_view parameters;  // each that it may have, between blanks
-  bool fan = false;
+  NamedKind kind;
 };
 
 constexpr KlipperSetting kOfKlipper[] = {
-    {"SET_FAN_SPEED", "FAN", " FAN SPEED ", true},
-    {"SET_LED", "LED", " LED RED GREEN BLUE WHITE SYNC TRANSMIT "},
-    {"SET_TMC_CURRENT", "STEPPER", " STEPPER CURRENT HOLDCURRENT "},
+    {"SET_FAN_SPEED", "FAN", " FAN SPEED ", NamedKind::kFan},
+    {"SET_LED", "LED", " LED RED GREEN BLUE WHITE SYNC TRANSMIT ", NamedKind::kLight},
+    {"SET_TMC_CURRENT", "STEPPER", " STEPPER CURRENT HOLDCURRENT ", NamedKind::kCurrent},
     {"SET_INPUT_SHAPER", "",
      " SHAPER_FREQ_X SHAPER_FREQ_Y SHAPER_TYPE SHAPER_TYPE_X SHAPER_TYPE_Y DAMPING_RATIO_X "
-     "DAMPING_RATIO_Y "},
+     "DAMPING_RATIO_Y ",
+     NamedKind::kShaper},
 };
 
 struct CommandSetting {
   int number = 0;
   std::string_view names;  // letters whose values name what is set
   std::string_view words;  // letters that it may have
+  NamedKind kind;
 };
 
 constexpr CommandSetting kOfCommands[] = {
-    {150, "", "RUWPB"},  // lights
-    {355, "", "SP"},     // those of the case
-    {593, "", "XYFD"},   // input shaping
-    {960, "S", "SP"},    // lights of Bambu Lab's printers
+    {150, "", "RUWPB", NamedKind::kLight},
+    {355, "", "SP", NamedKind::kLight},  // of the case
+    {593, "", "XYFD", NamedKind::kShaper},
+    {960, "S", "SP", NamedKind::kLight},  // of Bambu Lab's printers
 };
 
 bool Among(std::string_view parameters, std::string_view name) {
@@ -73,16 +75,18 @@ std::optional<std::string> NameOf(const KlipperSetting& setting, std::string_vie
 
 }  // namespace
 
-SlotMask SlotOfName(std::string_view name, bool fan) {
-  return fan ? SlotIn(name, kSlotNamedFan, kSlotNamed - kSlotNamedFan)
-             : SlotIn(name, kSlotNamed, kSlotCount - kSlotNamed);
+SlotMask SlotOfName(std::string_view name, NamedKind kind) {
+  constexpr Slot kFirst[] = {kSlotNamedFan,     kSlotNamedTool,  kSlotNamedShaper,
+                             kSlotNamedCurrent, kSlotNamedLight, kSlotCount};
+  const auto k = static_cast<size_t>(kind);
+  return SlotIn(name, kFirst[k], kFirst[k + 1] - kFirst[k]);
 }
 
 SlotMask NamedTextSlots(std::string_view command, std::string_view parameters) {
   for (const KlipperSetting& setting : kOfKlipper) {
     if (setting.command != command) continue;
     const auto name = NameOf(setting, parameters);
-    return name ? SlotOfName(*name, setting.fan) : 0;
+    return name ? SlotOfName(*name, setting.kind) : 0;
   }
   return 0;
 }
@@ -105,7 +109,7 @@ SlotMask NamedCommandSlots(Command& command) {
     for (const char letter : setting.names) {
       if (!command.Has(letter)) return 0;
     }
-    return sets ? SlotOfName(name, false) : 0;
+    return sets ? SlotOfName(name, setting.kind) : 0;
   }
   return 0;
 }

@@ -20,8 +20,11 @@ namespace traverse::gcode {
 SlotMask NamedTextSlots(std::string_view command, std::string_view parameters);
 SlotMask NamedCommandSlots(Command& command);
 
-// That of what is called `name`, a fan or something else, for settings that are known elsewhere.
-SlotMask SlotOfName(std::string_view name, bool fan);
+// What has names of its own, each kind with slots of its own.
+enum class NamedKind { kFan, kTool, kShaper, kCurrent, kLight };
+
+// The slot of what is called `name`, for settings that are known elsewhere.
+SlotMask SlotOfName(std::string_view name, NamedKind kind);
 
 }  // namespace traverse::gcode
 

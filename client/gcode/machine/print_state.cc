@@ -36,7 +36,7 @@ SlotMask FanSlots(Command& command) {
   if (others != 0) return 0;
   const Decimal fan = command.Has('P') ? command.Value('P') / kDecimalOne : 0;
   if (fan < 0) return 0;
-  if (fan > 3) return SlotOfName(absl::StrCat("M106 P", fan), true);
+  if (fan > 3) return SlotOfName(absl::StrCat("M106 P", fan), NamedKind::kFan);
   return SlotBit(static_cast<Slot>(kSlotFan + fan));
 }
 
@@ -49,7 +49,8 @@ SlotMask OnlyWord(Command& command, char letter, Slot slot) {
 // holds for itself, too.
 SlotMask OfTool(Command& command, SlotMask slots, char tool) {
   if (slots == 0 || !command.Has(tool)) return slots;
-  return slots | SlotOfName(absl::StrCat("M", command.number, " ", command.Value(tool)), false);
+  return slots |
+         SlotOfName(absl::StrCat("M", command.number, " ", command.Value(tool)), NamedKind::kTool);
 }
 
 // Repetier's, as CuraEngine writes it; elsewhere M207 says how G10 retracts, by S and F.
@@ -152,9 +153,9 @@ SlotMask PressureSlots(std::string_view rest) {
   SlotMask of_extruder = 0;
   for (std::string_view parameter; !(parameter = NextParameter(rest)).empty();) {
     if (StartsWith(parameter, "SMOOTH_TIME=")) {
-      slots |= SlotOfName("SMOOTH_TIME", false);
+      slots |= SlotOfName("SMOOTH_TIME", NamedKind::kTool);
     } else if (StartsWith(parameter, "EXTRUDER=")) {
-      of_extruder = SlotOfName(parameter, false);
+      of_extruder = SlotOfName(parameter, NamedKind::kTool);
     } else {
       slots |= SlotBit(kSlotPressure);
     }

@@ -54,14 +54,20 @@ enum Slot : uint8_t {
   kSlotSpeed,          // M220
   kSlotPressure,       // M900, M572, M233, SET_PRESSURE_ADVANCE
   kSlotFlow,           // M221
-  // Settings with names of their own, such as fans and input shapers: each in the slot that
-  // its name falls to. Two that share one cannot both be restored, which the verifier finds.
+  // Settings with names of their own, such as fans and input shapers (named_setting.h): each in one
+  // of its kind's slots, to which its name falls. Two that share one cannot both be restored, which
+  // the verifier finds.
   kSlotNamedFan,
-  kSlotNamed = kSlotNamedFan + 4,
-  kSlotCount = kSlotNamed + 8,
+  kSlotNamedTool = kSlotNamedFan + 6,
+  kSlotNamedShaper = kSlotNamedTool + 6,
+  kSlotNamedCurrent = kSlotNamedShaper + 6,
+  kSlotNamedLight = kSlotNamedCurrent + 6,
+  kSlotCount = kSlotNamedLight + 7,
 };
 
 using SlotMask = uint64_t;
+
+static_assert(kSlotCount < 64);
 
 constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
 
@@ -80,7 +86,7 @@ inline constexpr SlotMask kDynamicsSlots =
 
 inline constexpr SlotMask kFanSlots = SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) |
                                       SlotBit(kSlotFan3) |
-                                      (SlotBit(kSlotNamed) - SlotBit(kSlotNamedFan));
+                                      (SlotBit(kSlotNamedTool) - SlotBit(kSlotNamedFan));
 
 // The slots that a line sets; 0 if it is not a setter. Reads the words of commands that may be one.
 SlotMask CommentSlots(std::string_view comment);

@@ -112,6 +112,20 @@ TEST(PathSettings, GoWithTheirPath) {
   }
 }
 
+// However they are called, they do not share what is remembered of them.
+TEST(PathSettings, OfTwoKindsGoWithTheirPathTogether) {
+  const std::vector<std::vector<std::string>> all = {
+      {"SET_LED LED=a RED=1\nM593 X F40\n", "SET_LED LED=a RED=0\nM593 X F50\n"},
+      {"SET_INPUT_SHAPER SHAPER_FREQ_X=40\nSET_TMC_CURRENT STEPPER=stepper_x CURRENT=1\n",
+       "SET_INPUT_SHAPER SHAPER_FREQ_X=50\nSET_TMC_CURRENT STEPPER=stepper_x CURRENT=2\n"},
+      {"M900 T1 K0.1\nM150 R9\n", "M900 T1 K0.2\nM150 R5\n"},
+  };
+  for (const std::vector<std::string>& settings : all) {
+    const GcodeRewrite rewrite = Up(Lines(settings));
+    EXPECT_EQ(rewrite.layers_changed, 4) << settings[0] << rewrite.unproven;
+  }
+}
+
 // One that firmware retracts by, and one that sets nothing, hold what stands beside them.
 TEST(PathSettings, WithOtherWordsTheyAreOtherCommands) {
   for (const char* line :
