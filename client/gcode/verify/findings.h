@@ -261,9 +261,8 @@ struct Observations {
   std::vector<StatedHeight> stated;     // by the other file's moves
   ExtremePoint first_highest;           // of the travel from the start script
   ExtremePoint first_lowest;
-  std::vector<LowestTravel> lowest;   // travel that goes lower than what it connects
-  std::vector<LowestTravel> deepest;  // moves straight down that do so
-  std::vector<Descent> descents;      // the longest of each travel
+  std::vector<LowestTravel> lowest;  // travel that goes lower than what it connects
+  std::vector<Descent> descents;     // the longest of each travel
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
   Box box;                                   // of all points

@@ -41,6 +41,14 @@ bool FallsAsOftenAsItRises(std::string_view text) {
   return falls * 4 > rises;
 }
 
+// The next line without blanks around it; `rest` goes on behind it.
+std::string_view TrimmedLine(std::string_view& rest) {
+  const size_t end = std::min(rest.find('\n'), rest.size());
+  const std::string_view line = TrimLine(rest.substr(0, end));
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  return line;
+}
+
 }  // namespace
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
@@ -245,9 +253,7 @@ bool VerifyMachine::PullsBehind() const {
   constexpr size_t kMostLines = 8;
   std::string_view rest = rest_;
   for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = TrimLine(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return false;
     if (line.empty() || line[0] == ';') continue;
     const char letter = UpperCase(line[0]);
@@ -281,9 +287,7 @@ size_t VerifyMachine::LinesOfLift() const {
   bool lifts = false;
   bool ended = false;
   for (size_t lines = 0; lines < kMostLines; ++lines) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = TrimLine(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return 0;
     const bool command = line.size() > 2 && (line[0] == 'G' || line[0] == 'g');
     const bool mode = line.size() > 2 && (line[0] == 'M' || line[0] == 'm');
@@ -306,9 +310,7 @@ bool VerifyMachine::ConditionOnlyTells() const {
   constexpr size_t kMostLines = 16;
   std::string_view rest = rest_;
   for (size_t i = 0; i < kMostLines && !rest.empty(); ++i) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = TrimLine(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return false;
     if (line.empty() || line[0] == ';') continue;
     const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
