@@ -1,7 +1,11 @@
 #include "client/gateway/http/heads.h"
 
 #include <algorithm>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/write.hpp>
 #include <cstdint>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -82,8 +86,8 @@ bool AllCame(const HeadParser& parser, uint64_t received) {
   return parser.is_done() || (IsPlain(parser) && received == *parser.content_length());
 }
 
-http::response<http::empty_body> HeadOf(const HttpResponse& response, unsigned version, bool keep,
-                                        std::optional<uint64_t> size) {
+std::string HeadOf(const HttpResponse& response, unsigned version, bool keep,
+                   std::optional<uint64_t> size) {
   http::response<http::empty_body> head;
   head.version(version);
   head.result(static_cast<unsigned>(response.status));
@@ -97,7 +101,9 @@ http::response<http::empty_body> HeadOf(const HttpResponse& response, unsigned v
   } else {
     head.chunked(version >= 11);
   }
-  return head;
+  std::ostringstream text;
+  text << head.base();
+  return text.str();
 }
 
 }  // namespace traverse::gateway

@@ -3,9 +3,12 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_HEADS_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_HEADS_H_
 
-#include <boost/beast/http.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/fields.hpp>
+#include <boost/beast/http/parser.hpp>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "client/gateway/http/message.h"
@@ -38,11 +41,10 @@ bool IsPlain(const HeadParser& parser);
 // Whether a body is complete of which `received` bytes have come.
 bool AllCame(const HeadParser& parser, uint64_t received);
 
-// The head of `response`; `version` is 10 or 11. `size`: of the body; without it the body comes in
-// chunks, or until the connection ends.
-boost::beast::http::response<boost::beast::http::empty_body> HeadOf(const HttpResponse& response,
-                                                                    unsigned version, bool keep,
-                                                                    std::optional<uint64_t> size);
+// The head of `response` as it is sent; `version` is 10 or 11. `size`: of the body; without it the
+// body comes in chunks, or until the connection ends.
+std::string HeadOf(const HttpResponse& response, unsigned version, bool keep,
+                   std::optional<uint64_t> size);
 
 }  // namespace traverse::gateway
 

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <chrono>
 #include <map>
 #include <set>
@@ -13,7 +19,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/gateway/http/connection.h"
+#include "client/gateway/http/problem.h"
 #include "client/gateway/http/session.h"
+#include "client/gateway/http/tls_context.h"
 #include "server/net/give_way.h"
 #include "server/net/open_files.h"
 #include "server/net/turns.h"
@@ -21,6 +30,7 @@
 namespace traverse::gateway {
 namespace {
 
+namespace net = boost::asio;
 using net::ip::tcp;
 
 // Splits HOST:PORT or [HOST]:PORT into a host for the resolver and a port.
@@ -73,7 +83,7 @@ class BeastServer : public HttpServer {
     net::post(*loop_, [this] {
       boost::system::error_code error;
       acceptor_.close(error);
-      for (AnySession* session : sessions_) session->Drain();
+      for (Session* session : sessions_) session->Drain();
     });
     const absl::Time end = absl::Now() + timeout;
     constexpr absl::Duration kLook = absl::Milliseconds(5);
@@ -168,17 +178,10 @@ class BeastServer : public HttpServer {
     auto [socket, address] = waiting_.TakeNext();
     if (!waiting_.empty()) ServeSoon();
     if (!acceptor_.is_open()) return Forget(address);
-    beast::tcp_stream stream(std::move(socket));
-    if (tls_ == nullptr) {
-      Serve(std::make_shared<Session<beast::tcp_stream>>(loop_, std::move(stream), nullptr,
-                                                         options_.limits, handler_, address),
-            address);
-      return;
-    }
-    const std::shared_ptr<TlsContext::Context> context = tls_->Current();
-    Serve(std::make_shared<Session<TlsStream>>(loop_, TlsStream(std::move(stream), *context),
-                                               context, options_.limits, handler_, address),
-          address);
+    auto connection =
+        Connection::Make(std::move(socket), tls_ == nullptr ? nullptr : tls_->Current());
+    Serve(std::make_shared<Session>(loop_, std::move(connection), options_.limits, handler_,
+                                    address));
   }
 
   // For a new one of `address`: those that wait have cost nothing yet. An address of which some do
@@ -191,12 +194,12 @@ class BeastServer : public HttpServer {
       return true;
     }
     if (waiting_.of(address) > 0) return false;
-    GiveWay<AnySession*> give_way;
-    for (AnySession* session : sessions_) {
+    GiveWay<Session*> give_way;
+    for (Session* session : sessions_) {
       const auto since = session->idle_since();
       give_way.Offer(session, session->peer_host(), since.value_or(Clock::now()), !since);
     }
-    AnySession* chosen = nullptr;
+    Session* chosen = nullptr;
     if (!give_way.Choose(address, Clock::now(), chosen)) return false;
     chosen->Close();
     return true;
@@ -215,12 +218,11 @@ class BeastServer : public HttpServer {
     socket.write_some(net::buffer(full), error);
   }
 
-  template <typename T>
-  void Serve(std::shared_ptr<T> session, const std::string& address) {
+  void Serve(const std::shared_ptr<Session>& session) {
     sessions_.insert(session.get());
-    net::co_spawn(*loop_, session->Run(), [this, session, address](const std::exception_ptr&) {
+    net::co_spawn(*loop_, session->Run(), [this, session](const std::exception_ptr&) {
       sessions_.erase(session.get());
-      Forget(address);
+      Forget(session->peer_host());
     });
   }
 
@@ -242,7 +244,7 @@ class BeastServer : public HttpServer {
   tcp::acceptor acceptor_;
   Turns<NewConnection> waiting_;          // of the loop's thread: not yet served
   bool serves_soon_ = false;              // likewise: ServeNext will be called
-  std::set<AnySession*> sessions_;        // likewise
+  std::set<Session*> sessions_;           // likewise
   std::map<std::string, int> addresses_;  // likewise: their connections
   std::atomic<int> connections_ = 0;
   int port_ = 0;
