@@ -191,9 +191,8 @@ class LayerLines {
 // until nothing does.
 class Rewriter {
  public:
-  Rewriter(const GcodeFile& file, const std::vector<FileOrder>& tries,
-           const RewriteOptions& options)
-      : file_(file), options_(options), chooser_(file, tries, options) {}
+  Rewriter(const GcodeFile& file, const FileOrder& found, const RewriteOptions& options)
+      : file_(file), options_(options), chooser_(file, found, options) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {
@@ -409,10 +408,9 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
   return left;
 }
 
-absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
-                                          const std::vector<gcode::FileOrder>& tries,
+absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file, const gcode::FileOrder& found,
                                           const RewriteOptions& options) {
-  gcode::Rewriter rewriter(file, tries, options);
+  gcode::Rewriter rewriter(file, found, options);
   absl::StatusOr<GcodeRewrite> rewrite = rewriter.Rewrite();
   if (rewrite.ok() && options.forecast_fast && options.policy != gcode::Policy::kFast) {
     rewrite->fast_seconds = rewriter.SecondsSavedByFast();

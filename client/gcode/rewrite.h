@@ -69,18 +69,17 @@ struct RewriteOptions : gcode::ChoiceOptions {
   bool forecast_fast = false;
 };
 
-// Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the
-// fastest print by the estimate. Under Policy::kSafe no layer's travel grows, neither within the
-// layer nor with the move to it, and walls are spared (layer_choice.h). Verifies the text by all
-// rules of `policy` before returning it (verify/verifier.h), and measures `after` on it. What
-// breaks a rule is ruled out, layer by layer, and the file is written again.
+// Writes `file` with each layer in an order made of the one in `found`, or in its own, whichever
+// makes the fastest print by the estimate. Under Policy::kSafe no layer's travel grows, neither
+// within the layer nor with the move to it, and walls are spared (layer_choice.h). Verifies the
+// text by all rules of `policy` before returning it (verify/verifier.h), and measures `after` on
+// it. What breaks a rule is ruled out, layer by layer, and the file is written again.
 //
-// Each order is empty, or has paths of its layer. If one has a path twice, or a plan of `policy`
-// does not allow it, the verifier finds that and the layer stays unchanged. Cancelled or
-// DeadlineExceeded once file.limit ends. Another error if the new text cannot be read again: that
-// is our bug.
-absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
-                                          const std::vector<gcode::FileOrder>& tries,
+// `found` is empty, or has an order for each layer: empty, or of paths of its layer. If one has a
+// path twice, or a plan of `policy` does not allow it, the verifier finds that and the layer stays
+// unchanged. Cancelled or DeadlineExceeded once file.limit ends. Another error if the new text
+// cannot be read again: that is our bug.
+absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file, const gcode::FileOrder& found,
                                           const RewriteOptions& options);
 
 // "travel 15.27 -> 12.41 m (-18.7 %), retractions 1187 -> 1059, estimated print time ..."

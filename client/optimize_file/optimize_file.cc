@@ -44,10 +44,10 @@ bool IsThorough(const InputJob& job, const SearchOptions& options) {
 absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::JobRun& run,
                                           const OptimizeFileOptions& options, bool thorough,
                                           absl::Time finish_by) {
-  std::vector<gcode::FileOrder> tries(1, gcode::FileOrder(job.gcode->layers.size()));
+  gcode::FileOrder found(job.gcode->layers.size());
   for (size_t i = 0; i < run.result.layers.size(); ++i) {
     const size_t layer = job.first_layer + i;
-    tries[0][layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
+    found[layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
   }
   RewriteOptions rewrite;
   static_cast<gcode::Liberties&>(rewrite) = options.gcode;
@@ -56,7 +56,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::Job
   if (thorough) rewrite.polish = {finish_by, options.cancel};
   rewrite.hidden = job.hidden;
   rewrite.forecast_fast = options.forecast_fast && thorough;
-  return RewriteGcode(*job.gcode, tries, rewrite);
+  return RewriteGcode(*job.gcode, found, rewrite);
 }
 
 // How the estimate changed, as far as the line in the file can say it.

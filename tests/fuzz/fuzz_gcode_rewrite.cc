@@ -36,17 +36,14 @@ void CheckSamePrint(const GcodeFile& file, const std::string& text, bool returne
         absl::StrCat("extrudes as far as before: ", before, " mm, ", after, " mm"));
 }
 
-std::vector<gcode::FileOrder> RandomTries(const GcodeFile& file, gcode::Policy policy,
-                                          uint64_t seed) {
+gcode::FileOrder RandomOrders(const GcodeFile& file, gcode::Policy policy, uint64_t seed) {
   Rng rng(seed);
-  std::vector<gcode::FileOrder> tries(2);
-  for (gcode::FileOrder& order : tries) {
-    for (const gcode::Layer& layer : file.layers) {
-      order.push_back(
-          gcode::testing::RandomOrder(layer, gcode::MakeLayerPlan(file, layer, policy).plan, rng));
-    }
+  gcode::FileOrder orders;
+  for (const gcode::Layer& layer : file.layers) {
+    orders.push_back(
+        gcode::testing::RandomOrder(layer, gcode::MakeLayerPlan(file, layer, policy).plan, rng));
   }
-  return tries;
+  return orders;
 }
 
 }  // namespace
@@ -60,8 +57,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const uint64_t seed = std::hash<std::string_view>{}(bytes);
   RewriteOptions options;
   options.policy = static_cast<gcode::Policy>(seed % 3);
-  const auto tries = fuzz::RandomTries(**file, options.policy, seed);
-  const auto rewrite = RewriteGcode(**file, tries, options);
+  const auto found = fuzz::RandomOrders(**file, options.policy, seed);
+  const auto rewrite = RewriteGcode(**file, found, options);
   if (rewrite.ok()) {
     fuzz::CheckSamePrint(**file, rewrite->text, /*returned=*/true);
     fuzz::Check(rewrite->after.seconds <= rewrite->before.seconds, "no print gets slower");

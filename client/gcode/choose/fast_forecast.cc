@@ -62,10 +62,10 @@ class FastSearch {
     rules.polish = PolishLimit{};
     rules.boundaries = BoundariesOf(file_, of_file);
     // Where whole objects have changed places, the file's own order begins it.
-    std::vector<LayerOrder> begun;
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);
-    if (std::is_sorted(places.begin(), places.end())) begun.push_back(chosen);
+    const bool moved = !std::is_sorted(places.begin(), places.end());
+    const LayerOrder& begun = moved ? column.given_order() : chosen;
     Seconds seconds;
     seconds.given = ForecastPaths(*column.writer, column.given_order());
     seconds.fast = std::min(seconds.given, ForecastPaths(writer, column.given_order()));

@@ -37,9 +37,9 @@ constexpr size_t kTurned = 2;
 
 class LayerChooser::Impl {
  public:
-  Impl(const GcodeFile& file, const std::vector<FileOrder>& tries, const ChoiceOptions& choice)
+  Impl(const GcodeFile& file, const FileOrder& found, const ChoiceOptions& choice)
       : file_(file),
-        tries_(tries),
+        found_(found),
         policy_(choice.policy),
         crossings_(choice.crossings),
         allow_(choice.allow),
@@ -238,21 +238,16 @@ class LayerChooser::Impl {
       rules.crossings = Crossings::kKeep;
       AddMerged(layer, rules, column);
     }
-    if (!objects_.any()) return;
+    if (!objects_.any() || found_.empty() || found_[layer].empty()) return;
     const LayerFreedom freedom = FreedomWithin(layer, rules);
-    objects_.AddTo(layer, tries_, freedom, std::move(rules), filler_, column);
+    objects_.AddTo(layer, freedom, std::move(rules), filler_, column);
   }
 
-  // The orders found for layer `layer`, merged by `rules`.
+  // The order found for layer `layer`, merged by `rules`.
   void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
-    std::vector<LayerOrder> found;
-    for (const FileOrder& order : tries_) {
-      const bool known = order[layer].empty() || order[layer] == column.choices[0].order;
-      if (!known) found.push_back(order[layer]);
-    }
-    if (found.empty()) return;
-    NoteBlocked(found, column);
-    const auto orders = MergedOrders(*column.writer, found, rules);
+    if (found_.empty() || found_[layer].empty() || found_[layer] == column.given_order()) return;
+    NoteBlocked(found_[layer], column);
+    const auto orders = MergedOrders(*column.writer, found_[layer], rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -386,7 +381,7 @@ class LayerChooser::Impl {
   }
 
   const GcodeFile& file_;
-  const std::vector<FileOrder>& tries_;
+  const FileOrder& found_;
   const Policy policy_;
   const Crossings crossings_;
   const Allowance allow_;
@@ -404,9 +399,9 @@ class LayerChooser::Impl {
   bool spared_ = false;  // retractions were
 };
 
-LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
+LayerChooser::LayerChooser(const GcodeFile& file, const FileOrder& found,
                            const ChoiceOptions& options)
-    : impl_(std::make_unique<Impl>(file, tries, options)) {}
+    : impl_(std::make_unique<Impl>(file, found, options)) {}
 
 LayerChooser::~LayerChooser() = default;
 

@@ -4,7 +4,7 @@
 // layer starts where a layer ends, so the choices depend on each other: the best sequence of them
 // is taken (choice_row.h).
 //
-// Writes and measures O(layers * tries^2) travel moves between layers and O(layers * tries) layers.
+// Writes and measures O(layers) layers and travel moves between layers.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
@@ -71,16 +71,16 @@ struct ChoiceOptions : Liberties {
   std::shared_ptr<const HiddenMoves> hidden = nullptr;
 };
 
-// Chooses among the file's order and those of `tries`, each improved with runs of the others
-// (merged_orders.h), by the rules of choice_row.h: the least estimated time with no more travel
+// Chooses among the file's order and what is made of the one found (merged_orders.h), by the rules
+// of choice_row.h: the least estimated time with no more travel
 // across visible walls.
 //
 // The result does not depend on the number of threads.
 class LayerChooser {
  public:
-  // Writes and measures the orders to choose from. `file` and `tries` outlive the chooser.
-  LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
-               const ChoiceOptions& options);
+  // Writes and measures the orders to choose from. `file` and `found` outlive the chooser;
+  // `found` is empty, or has all layers.
+  LayerChooser(const GcodeFile& file, const FileOrder& found, const ChoiceOptions& options);
   ~LayerChooser();
 
   // The best choice that is not ruled out.

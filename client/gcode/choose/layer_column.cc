@@ -49,15 +49,13 @@ double ForecastPaths(const LayerWriter& writer, const LayerOrder& order) {
   return seconds;
 }
 
-void NoteBlocked(const std::vector<LayerOrder>& orders, LayerColumn& column) {
+void NoteBlocked(const LayerOrder& order, LayerColumn& column) {
   const LayerWriter& writer = *column.writer;
   if (writer.room() == nullptr) return;
   LinkParts parts(writer.file());
-  for (const LayerOrder& order : orders) {
-    for (size_t place = 1; place < order.size(); ++place) {
-      const auto link = writer.EstimateTravel(place, order[place - 1], order[place], parts);
-      column.blocked |= link.blocked > 0;
-    }
+  for (size_t place = 1; place < order.size(); ++place) {
+    const auto link = writer.EstimateTravel(place, order[place - 1], order[place], parts);
+    column.blocked |= link.blocked > 0;
   }
 }
 

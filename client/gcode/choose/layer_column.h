@@ -38,7 +38,7 @@ struct LayerColumn {
   std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
   std::vector<LayerChoice> choices;
   ChoiceColumn totals;
-  bool blocked = false;  // in an order that was found, something stands in the way
+  bool blocked = false;  // in the order that was found, something stands in the way
   uint32_t chosen = 0;
   double given_travel_seconds = 0;    // nominal, to the layer in the file
   std::vector<double> given_moments;  // when each path begins and ends there
@@ -55,8 +55,8 @@ struct LayerColumn {
   }
 };
 
-// Notes whether something stands in the way in one of `orders`.
-void NoteBlocked(const std::vector<LayerOrder>& orders, LayerColumn& column);
+// Notes whether something stands in the way in `order`.
+void NoteBlocked(const LayerOrder& order, LayerColumn& column);
 
 // The place whose path, or the link to it, has line `line`, from 0, of the paths of `column` as
 // last chosen.

@@ -88,44 +88,39 @@ class LayerMerge {
  public:
   using Effort = OrderPolisher::Effort;
 
-  LayerMerge(const LayerWriter& writer, const std::vector<LayerOrder>& found,
-             const MergeRules& rules)
+  LayerMerge(const LayerWriter& writer, const MergeRules& rules)
       : rules_(rules),
         outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
-        found_(found),
         travels_(writer, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
         few_(estimate_, AnyLength(LimitsOf(were_, rules))),
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
-    all_ = found;
-    all_.push_back(given_);
     travels_.MoveObjects();
     if (!rules.freedom) return;
     polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
   }
 
-  std::vector<LayerOrder> Merge() {
-    std::vector<LayerOrder> begun = found_;
-    if (IsFree(rules_.policy)) {
-      for (const LayerOrder& order : found_) begun.push_back(InGivenOrder(order));
-    }
-    LayerOrder best_between = Better(strict_, given_, found_, Effort::kSettle);
+  std::vector<LayerOrder> Merge(const LayerOrder& found) const {
+    const std::vector<LayerOrder> all = {found, given_};
+    std::vector<LayerOrder> begun = {found};
+    if (IsFree(rules_.policy)) begun.push_back(InGivenOrder(found));
+    LayerOrder best_between = Better(strict_, given_, {found}, Effort::kSettle);
     std::vector<LayerOrder> merged;
     for (const LayerOrder& order : begun) {
-      merged.push_back(Better(quick_, order, all_, Effort::kSettle));
+      merged.push_back(Better(quick_, order, all, Effort::kSettle));
       if (!EndsAlike(order, given_)) {
-        merged.push_back(Better(few_, order, all_, Effort::kKick));
+        merged.push_back(Better(few_, order, all, Effort::kKick));
         continue;
       }
-      LayerOrder better = Better(strict_, order, all_, Effort::kSettle);
+      LayerOrder better = Better(strict_, order, all, Effort::kSettle);
       if (Rank(better) < Rank(best_between)) best_between = std::move(better);
     }
     best_between = Better(strict_, best_between, {}, Effort::kKick);
     if (best_between != given_) merged.push_back(std::move(best_between));
-    AddSparing(merged);
+    AddSparing(found, merged);
     return merged;
   }
 
@@ -237,22 +232,20 @@ class LayerMerge {
   }
 
   // The file may have no retractions to spare.
-  void AddSparing(std::vector<LayerOrder>& merged) const {
+  void AddSparing(const LayerOrder& found, std::vector<LayerOrder>& merged) const {
     const bool all_retract_more = std::all_of(merged.begin(), merged.end(), [&](const auto& order) {
       return strict_.TotalsOf(order).retractions > were_.retractions;
     });
     if (!all_retract_more || rules_.as_many_retractions) return;
     MergeLimits sparing = LimitsOf(were_, rules_);
     sparing.retractions = were_.retractions;
-    LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, found_, Effort::kKick);
+    LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, {found}, Effort::kKick);
     if (order != given_) merged.push_back(std::move(order));
   }
 
   const MergeRules& rules_;
   const std::vector<Outline>& outlines_;
   const LayerOrder given_;
-  const std::vector<LayerOrder> found_;
-  std::vector<LayerOrder> all_;  // of them and given
   KnownTravels travels_;
   const TravelEstimate estimate_ = std::ref(travels_);
   const TravelTotals were_;
@@ -272,21 +265,17 @@ std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
   return boundaries;
 }
 
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer,
-                                     const std::vector<LayerOrder>& found,
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const LayerOrder& found,
                                      const MergeRules& rules) {
-  const LayerOrder given = writer.GivenOrder();
-  for (const LayerOrder& order : found) {
-    if (!IsWhole(order, given)) return found;
-  }
-  return LayerMerge(writer, found, rules).Merge();
+  if (!IsWhole(found, writer.GivenOrder())) return {found};
+  return LayerMerge(writer, rules).Merge(found);
 }
 
 std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const LayerOrder& order,
                                         const MergeRules& rules, const LayerFreedom& freedom,
                                         size_t reach) {
   if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
-  return LayerMerge(writer, {}, rules).Repair(order, freedom, reach);
+  return LayerMerge(writer, rules).Repair(order, freedom, reach);
 }
 
 TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
@@ -298,26 +287,26 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
   for (const LayerOrder& order : orders) {
     if (IsWhole(order, writer.GivenOrder())) whole.push_back(order);
   }
-  const LayerMerge merge(writer, {}, rules);
+  const LayerMerge merge(writer, rules);
   return merge.Turn(whole, freedom, islands, rest_seconds,
                     merge.ClockOf(moments, travel.speed_mm_s));
 }
 
 LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
                          const MergeRules& rules, std::vector<uint32_t> units) {
-  return LayerMerge(writer, {}, rules).SettleWithin(order, std::move(units));
+  return LayerMerge(writer, rules).SettleWithin(order, std::move(units));
 }
 
 LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,
                         const MergeRules& rules) {
   if (!IsWhole(order, writer.GivenOrder())) return order;
-  return LayerMerge(writer, {}, rules).Settle(order);
+  return LayerMerge(writer, rules).Settle(order);
 }
 
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,
                                       const MergeRules& rules) {
   if (!IsWhole(order, writer.GivenOrder())) return {};
-  return LayerMerge(writer, {}, rules).Spare(order);
+  return LayerMerge(writer, rules).Spare(order);
 }
 
 }  // namespace traverse::gcode

@@ -1,4 +1,4 @@
-// Selects and improves the orders that a search found for a layer, before they are written.
+// Improves the order that a search found for a layer, before it is written.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
@@ -41,12 +41,12 @@ struct MergeRules {
 // MergeRules::boundaries of `layer`.
 std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer);
 
-// The orders of `found`, each improved with runs of the others and of the file's own order, and
-// brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
-// begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is
-// also tried with its paths in the order of the file.
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer,
-                                     const std::vector<LayerOrder>& found, const MergeRules& rules);
+// `found`, improved with runs of the file's own order, and brought within the limits of `rules` as
+// far as estimates tell (order_merge.h): in a few ways, of which only the best stays where it
+// begins and ends with the same paths as the file. Where IsFree(policy) it is also tried with its
+// paths in the order of the file.
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const LayerOrder& found,
+                                     const MergeRules& rules);
 
 // `order` without the links that `rules` refuse, or as few of them as can be had by changes around
 // each; for a layer of freedom `freedom`. With greater `reach`, more paths around each are as

@@ -272,13 +272,10 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
   return moved;
 }
 
-void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries,
-                         const LayerFreedom& freedom, MergeRules rules, const ColumnFiller& filler,
-                         LayerColumn& column) const {
+void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, MergeRules rules,
+                         const ColumnFiller& filler, LayerColumn& column) const {
   assert(any());
   constexpr size_t kBests = 2;
-  const auto asked = [layer](const auto& orders) { return !orders[layer].empty(); };
-  if (std::none_of(tries.begin(), tries.end(), asked)) return;
   const Layer& of_file = file_.layers[layer];
   const LayerObjects objects = ObjectsOf(of_file, freedom);
   if (objects.runs.empty()) return;

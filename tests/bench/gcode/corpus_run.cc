@@ -107,16 +107,16 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   const absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
   if (!result.ok()) return result.status();
   run.found_seconds = FoundSeconds(*job, result->layers);
-  std::vector<gcode::FileOrder> tries(1);
+  gcode::FileOrder found;
   for (size_t i = 0; i < result->layers.size(); ++i) {
-    tries[0].push_back(OrderOf(file, i, result->layers[i]));
+    found.push_back(OrderOf(file, i, result->layers[i]));
   }
   RewriteOptions rewriting;
   rewriting.policy = policy;
   rewriting.crossings = options.crossings;
   rewriting.threads = gcode::DefaultThreads();
   if (strategy == "auto") rewriting.polish = gcode::PolishLimit();
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, tries, rewriting);
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, found, rewriting);
   run.cpu_seconds = CpuSeconds() - began;
   if (!rewrite.ok()) {
     run.fault = std::string(rewrite.status().message());

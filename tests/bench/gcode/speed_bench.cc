@@ -99,13 +99,13 @@ bool Run(const std::string& input, const std::string& strategy, double megabytes
   absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
   if (!result.ok()) return false;
   phases.Done("optimise");
-  std::vector<gcode::FileOrder> tries(1);
+  gcode::FileOrder found;
   for (size_t i = 0; i < result->layers.size(); ++i) {
-    tries[0].push_back(OrderOf(*job->gcode, i, result->layers[i]));
+    found.push_back(OrderOf(*job->gcode, i, result->layers[i]));
   }
   RewriteOptions options;
   options.threads = gcode::DefaultThreads();
-  const auto rewrite = RewriteGcode(*job->gcode, tries, options);
+  const auto rewrite = RewriteGcode(*job->gcode, found, options);
   if (!rewrite.ok()) return false;
   phases.Done("rewrite");
   if (!WriteWholeFile(input + ".out", rewrite->text).ok()) return false;

@@ -64,7 +64,7 @@ GcodeRewrite Rewritten(const std::string& text, const FileOrder& order, Policy p
   options.policy = policy;
   options.polish.emplace();
   options.min_revisit_seconds = min_revisit_seconds;
-  const auto rewrite = RewriteGcode(*Read(text), {order}, options);
+  const auto rewrite = RewriteGcode(*Read(text), order, options);
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return rewrite.ok() ? *rewrite : GcodeRewrite{};
 }

@@ -34,7 +34,7 @@ TEST(RewriteGcode, WritesTheBetterOrderAndSaysSoBehindTheHead) {
   const auto file = Read(kScattered);
 
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*file, {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -51,7 +51,7 @@ TEST(RewriteGcode, SaysWhatOneSeesWhoMeasuresWhatItWrote) {
   const auto file = Read(kScattered);
 
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*file, {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   const PrintTotals seen = Sum(MeasureLayers(*Read(rewrite->text)));
@@ -68,7 +68,7 @@ TEST(RewriteGcode, RenewsTheDigestThatTheFirstLineStates) {
   const auto file = Read(original);
 
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*file, {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -88,7 +88,7 @@ TEST(RewriteGcode, RenewsTheDigestOfNumberedLines) {
   const auto file = Read(original);
 
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*file, {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -102,7 +102,7 @@ TEST(RewriteGcode, LeavesAWrongDigest) {
   const auto file = Read(line + kScattered);
 
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*file, {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -110,11 +110,11 @@ TEST(RewriteGcode, LeavesAWrongDigest) {
 }
 
 TEST(RewriteGcode, ASecondRunReplacesTheLine) {
-  const auto once = RewriteGcode(*Read(kScattered), {{kBetterOrder}}, OptionsWithVersion());
+  const auto once = RewriteGcode(*Read(kScattered), {kBetterOrder}, OptionsWithVersion());
   ASSERT_TRUE(once.ok());
   const std::string marked = std::string("; optimised by Traverse 0.9\n") + kScattered;
 
-  const auto again = RewriteGcode(*Read(marked), {{kBetterOrder}}, OptionsWithVersion());
+  const auto again = RewriteGcode(*Read(marked), {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(again.ok());
   EXPECT_EQ(again->text, once->text);
@@ -140,8 +140,8 @@ TEST(RewriteGcode, WhereNothingSaysHowECountsTheWordsInAnotherOrderMustNotEither
   RewriteOptions options = OptionsWithVersion();
   options.policy = Policy::kFree;
 
-  const auto stated = RewriteGcode(*Read(text("M83\n")), {{by_place}}, options);
-  const auto silent = RewriteGcode(*Read(text("")), {{by_place}}, options);
+  const auto stated = RewriteGcode(*Read(text("M83\n")), {by_place}, options);
+  const auto silent = RewriteGcode(*Read(text("")), {by_place}, options);
 
   ASSERT_TRUE(stated.ok()) << stated.status();
   ASSERT_TRUE(silent.ok()) << silent.status();
@@ -156,7 +156,7 @@ TEST(RewriteGcode, SpeedsOfTravelStayAsTheyAreWritten) {
   const std::string text = absl::StrReplaceAll(kScattered, {{"Y20 F9000\n", "Y20 F09000\n"}});
   ASSERT_NE(text, kScattered);
 
-  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder}}, OptionsWithVersion());
+  const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -165,7 +165,7 @@ TEST(RewriteGcode, SpeedsOfTravelStayAsTheyAreWritten) {
 
 TEST(RewriteGcode, LineEndsSurvive) {
   const auto rewrite =
-      RewriteGcode(*Read(WithCrLf(kScattered)), {{kBetterOrder}}, OptionsWithVersion());
+      RewriteGcode(*Read(WithCrLf(kScattered)), {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok());
   for (size_t at = 0; (at = rewrite->text.find('\n', at)) != std::string::npos; ++at) {
@@ -180,7 +180,7 @@ TEST(RewriteGcode, TheLineStandsInNoPicture) {
     const std::string picture =
         absl::StrCat("; thumbnail begin 2x2 8\n; AA\n", odd, "; BB\n; thumbnail end\n");
     const auto rewrite =
-        RewriteGcode(*Read(begin + picture + lines), {{kBetterOrder}}, OptionsWithVersion());
+        RewriteGcode(*Read(begin + picture + lines), {kBetterOrder}, OptionsWithVersion());
 
     ASSERT_TRUE(rewrite.ok()) << rewrite.status();
     EXPECT_EQ(rewrite->layers_changed, 1) << rewrite->unproven;
@@ -192,7 +192,7 @@ TEST(RewriteGcode, AnArcWithoutCenterIsNamedAsTheReasonForItsLayer) {
   const std::string text =
       std::string(kScattered) + kNoRest + "G1 Z.4\n" + "G1 X5 Y5 E1\nG3 X9 Y9 E1\n";
 
-  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder, {}}}, OptionsWithVersion());
+  const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder, {}}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -208,7 +208,7 @@ TEST(RewriteGcode, RelativeMovesAreNamedIfMostOfThePrintStaysForThem) {
   const auto rewritten = [](const std::string& text) {
     const auto file = ReadGcode(text, "part.gcode");
     EXPECT_TRUE(file.ok());
-    return *RewriteGcode(**file, {FileOrder((*file)->layers.size())}, {});
+    return *RewriteGcode(**file, FileOrder((*file)->layers.size()), {});
   };
   const GcodeRewrite mostly = rewritten(begin + relative + "G90\nM84\n");
   EXPECT_EQ(mostly.relative_moves, 2);
@@ -219,7 +219,7 @@ TEST(RewriteGcode, RelativeMovesAreNamedIfMostOfThePrintStaysForThem) {
 TEST(RewriteGcode, MovesThatCannotBeReadAreNamed) {
   const std::string text = std::string(kScattered) + "G1 X5 (a) Y5 E.3\ng1 X9{y}\nG28 X{x}\n";
 
-  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder, {}}}, OptionsWithVersion());
+  const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder, {}}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unread_moves, 2);
@@ -231,7 +231,7 @@ TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
   const LineNumbers numbers{0, 1, 1, " ", true};
   const std::string text = WithLineNumbers(kScattered, numbers);
 
-  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder}}, OptionsWithVersion());
+  const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -245,7 +245,7 @@ TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
 TEST(RewriteGcode, TheMarkOfUtf8StaysAtTheBeginning) {
   const std::string bom = "\xEF\xBB\xBF";
   for (const std::string& text : {bom + kScattered, bom + std::string(kScattered).substr(51)}) {
-    const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder}}, OptionsWithVersion());
+    const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder}, OptionsWithVersion());
 
     ASSERT_TRUE(rewrite.ok()) << rewrite.status();
     EXPECT_EQ(rewrite->layers_changed, 1);
@@ -279,7 +279,7 @@ TEST(RewriteGcode, DamagedFilesStayEquivalentOrAsTheyAre) {
     }
     RewriteOptions options = OptionsWithVersion();
     options.policy = Policy::kFree;
-    const auto rewrite = RewriteGcode(**file, {orders}, options);
+    const auto rewrite = RewriteGcode(**file, orders, options);
     if (!rewrite.ok()) {
       EXPECT_EQ(rewrite.status().code(), absl::StatusCode::kFailedPrecondition) << "seed " << seed;
       continue;

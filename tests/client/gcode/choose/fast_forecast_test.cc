@@ -46,7 +46,7 @@ GcodeRewrite Rewritten(const GcodeFile& file, Policy policy) {
   options.policy = policy;
   options.polish = PolishLimit{};
   options.forecast_fast = true;
-  auto rewrite = RewriteGcode(file, {Backwards(file)}, options);
+  auto rewrite = RewriteGcode(file, Backwards(file), options);
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return *std::move(rewrite);
 }

@@ -63,7 +63,7 @@ TEST_F(MergedOrdersTest, HaveNoOpenTravelAcrossWallsThatIsLongerThanTheFiles) {
   rules.crossings = Crossings::kAny;
   rules.boundaries.assign(found.size(), false);
 
-  const std::vector<LayerOrder> merged = MergedOrders(*writer_, {found}, rules);
+  const std::vector<LayerOrder> merged = MergedOrders(*writer_, found, rules);
 
   ASSERT_FALSE(merged.empty());
   for (const LayerOrder& order : merged) {
@@ -89,7 +89,7 @@ TEST_F(MergedOrdersTest, UnderSafeTheBestTravelsNoFurtherThanTheFile) {
   rules.boundaries.assign(found.size(), false);
   const auto merged = [&](Policy policy) {
     rules.policy = policy;
-    const std::vector<LayerOrder> orders = MergedOrders(writer, {found}, rules);
+    const std::vector<LayerOrder> orders = MergedOrders(writer, found, rules);
     return std::count(orders.begin(), orders.end(), found);
   };
 
@@ -117,7 +117,7 @@ TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   rules.policy = Policy::kBalanced;
   rules.boundaries.assign(found.size(), false);
   const auto has = [&](const LayerOrder& order) {
-    const std::vector<LayerOrder> orders = MergedOrders(writer, {found}, rules);
+    const std::vector<LayerOrder> orders = MergedOrders(writer, found, rules);
     return std::count(orders.begin(), orders.end(), order) > 0;
   };
   const LayerOrder sparing = OrderOf({0, 1, 3, 2, 4, 5, 6, 7, 8});
@@ -147,7 +147,7 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   rules.boundaries.assign(found.size(), false);
   const auto shortest = [&] {
     double mm = std::numeric_limits<double>::infinity();
-    for (const LayerOrder& order : MergedOrders(writer, {found}, rules)) {
+    for (const LayerOrder& order : MergedOrders(writer, found, rules)) {
       TravelTotals totals;
       for (size_t i = 1; i < order.size(); ++i) {
         totals += writer.EstimateTravel(i, order[i - 1], order[i]);
@@ -228,7 +228,7 @@ TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
   const auto shortest_mm = [&](Policy policy) {
     rules.policy = policy;
     double least = 1e9;
-    for (const LayerOrder& order : MergedOrders(writer, {found}, rules)) {
+    for (const LayerOrder& order : MergedOrders(writer, found, rules)) {
       double mm = 0;
       for (size_t i = 1; i < order.size(); ++i) {
         mm += writer.EstimateTravel(i, order[i - 1], order[i]).mm;

@@ -34,9 +34,9 @@ GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe,
                        std::optional<PolishLimit> polish = PolishLimit{}) {
   const auto file = ReadGcode(text, "part.gcode");
   EXPECT_TRUE(file.ok()) << file.status();
-  std::vector<FileOrder> tries(1);
+  FileOrder found;
   for (const Layer& layer : (*file)->layers) {
-    LayerOrder& order = tries[0].emplace_back();
+    LayerOrder& order = found.emplace_back();
     const std::vector<Outline> outlines = OutlinesOf(**file, layer);
     for (uint32_t i = 0; i < outlines.size(); ++i) {
       order.push_back({layer.first_block + i, 0, outlines[i].closed});
@@ -45,7 +45,7 @@ GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe,
   RewriteOptions options;
   options.policy = policy;
   options.polish = std::move(polish);
-  const auto rewrite = RewriteGcode(**file, tries, options);
+  const auto rewrite = RewriteGcode(**file, found, options);
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return *rewrite;
 }

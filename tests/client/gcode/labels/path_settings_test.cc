@@ -41,14 +41,14 @@ GcodeRewrite InOrder(const std::string& text, const std::vector<uint32_t>& paths
                      Policy policy = Policy::kSafe) {
   const auto file = ReadGcode(text, "part.gcode");
   EXPECT_TRUE(file.ok()) << file.status();
-  std::vector<FileOrder> tries(1);
+  FileOrder found;
   for (const Layer& layer : (*file)->layers) {
-    LayerOrder& order = tries[0].emplace_back();
+    LayerOrder& order = found.emplace_back();
     for (const uint32_t path : paths) order.push_back({layer.first_block + path, 0, false});
   }
   RewriteOptions options;
   options.policy = policy;
-  const auto rewrite = RewriteGcode(**file, tries, options);
+  const auto rewrite = RewriteGcode(**file, found, options);
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return *rewrite;
 }

@@ -34,7 +34,7 @@ TEST(LinkComposer, AFeedRateThatIsSetOnALineBeforeIsNotLost) {
   const LayerOrder better = {
       {0, 0, false}, {2, 0, false}, {3, 0, false}, {1, 0, false}, {4, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{better}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);
@@ -59,7 +59,7 @@ TEST(LinkComposer, TravelsAreGoneUnderTheAccelerationOfTravels) {
   const LayerOrder better = {{0, 0, false}, {3, 0, false}, {4, 0, false},
                              {2, 0, false}, {1, 0, false}, {5, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{better}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -99,7 +99,7 @@ TEST(LinkComposer, TravelsAreAsFastAsTheLayerHasThem) {
 TEST(LinkComposer, TheTravelToALayerBelowTheStartScriptIsNotAtTheHeightOfThat) {
   const auto file = Read(Purged("G1 X60 Y-40 F3000\nG1 Y3 E9 F1000\n"));
 
-  const auto rewrite = RewriteGcode(*file, {{{}, FromTheNearest(1)}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {{}, FromTheNearest(1)}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -126,7 +126,7 @@ TEST(LinkComposer, AWipeOfALoopLeadsAlongItsBeginning) {
   const auto file = Read(text);
   const LayerOrder better = {{0, 0, true}, {2, 0, true}, {3, 0, true}, {4, 0, true}, {1, 0, true}};
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better, {}}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -154,7 +154,7 @@ TEST(LinkComposer, BehindTheMarksOfALayerAccelerationsAreSetOnce) {
   RewriteOptions options;
   options.policy = Policy::kFree;
 
-  const auto rewrite = RewriteGcode(*file, {{{}, better}}, options);
+  const auto rewrite = RewriteGcode(*file, {{}, better}, options);
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -181,7 +181,7 @@ TEST(LinkComposer, TheHeadDoesNotSinkOverWhatWasPrintedBefore) {
   const auto file = Read(text);
   const LayerOrder better = {{3, 0, false}, {5, 0, false}, {6, 0, false}, {4, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{{}, better, {}}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {{}, better, {}}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -214,7 +214,7 @@ TEST(LinkComposer, WhereNoTravelLeadsToALayerTheHeadRisesAtTheSpeedOfLifts) {
   const auto file = Read(text);
   const LayerOrder better = {{0, 0, false}, {2, 1, false}, {3, 0, false}, {1, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better, {}}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -247,7 +247,7 @@ TEST_P(ShortPath, IsWipedAsFastAsOthers) {
   const LayerOrder better = {{0, 0, false}, {2, 1, false}, {4, 0, false},
                              {3, 1, false}, {1, 0, false}, {5, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{better}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -284,7 +284,7 @@ TEST_P(ShortPathWithAWipe, IsWipedAsItIs) {
   const LayerOrder better = {
       {0, 0, false}, {1, 0, false}, {tiny, 0, false}, {2, 0, false}, {7 - tiny, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better, {}}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");

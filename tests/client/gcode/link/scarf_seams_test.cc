@@ -51,12 +51,12 @@ std::string Seams(const Travel& travel) {
 
 GcodeRewrite InOrder(const std::string& text, const std::vector<uint32_t>& paths) {
   const auto file = testing::Read(text);
-  std::vector<FileOrder> tries(1);
+  FileOrder found;
   for (const Layer& layer : file->layers) {
-    LayerOrder& order = tries[0].emplace_back();
+    LayerOrder& order = found.emplace_back();
     for (const uint32_t path : paths) order.push_back({layer.first_block + path, 0, false});
   }
-  const auto rewrite = RewriteGcode(*file, tries, RewriteOptions());
+  const auto rewrite = RewriteGcode(*file, found, RewriteOptions());
   EXPECT_TRUE(rewrite.ok()) << rewrite.status();
   return *rewrite;
 }

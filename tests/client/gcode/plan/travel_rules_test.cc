@@ -209,9 +209,9 @@ TEST(RewriteGcode, CrossesNoMoreWallsUnlessAskedTo) {
   RewriteOptions options;
   options.policy = Policy::kFree;
 
-  const auto keep = RewriteGcode(*file, {{past}}, options);
+  const auto keep = RewriteGcode(*file, {past}, options);
   options.crossings = Crossings::kAny;
-  const auto any = RewriteGcode(*file, {{past}}, options);
+  const auto any = RewriteGcode(*file, {past}, options);
 
   ASSERT_TRUE(keep.ok() && any.ok());
   EXPECT_EQ(keep->layers_changed, 0);
@@ -348,7 +348,7 @@ TEST(MakeGcodeJob, AsksForNoBound) {
 
 TEST(RewriteGcode, UnderSafeNoMoreTravelsCrossWallsWithAnOpenNozzle) {
   const auto file = Ring("; avoid_crossing_perimeters = 0").Read();
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*file, {{kPastTheHole}}, {});
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*file, {kPastTheHole}, {});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_LE(rewrite->after.open_crossings, rewrite->before.open_crossings);

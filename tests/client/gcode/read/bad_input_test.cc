@@ -121,7 +121,7 @@ int RewrittenByTheRules(const std::string& text) {
       const LayerPlan planned = MakeLayerPlan(**file, layer, Policy::kFree);
       orders.push_back(testing::RandomOrder(layer, planned.plan, rng));
     }
-    const auto rewrite = RewriteGcode(**file, {orders}, options);
+    const auto rewrite = RewriteGcode(**file, orders, options);
     if (!rewrite.ok()) {
       EXPECT_EQ(rewrite.status().code(), absl::StatusCode::kFailedPrecondition);
       EXPECT_FALSE(rewrite.status().message().empty());

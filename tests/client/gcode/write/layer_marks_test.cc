@@ -26,7 +26,7 @@ void ExpectRewritten(const std::string& text, const LayerOrder& better) {
   RewriteOptions options;
   options.policy = Policy::kFree;
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, options);
+  const auto rewrite = RewriteGcode(*file, {better, {}}, options);
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -95,7 +95,7 @@ TEST(LayerWriter, WhatTheStartScriptDoesBehindItsPurgeLineStays) {
   const auto file = Read(Purged("G1 X60 Y3 E9 F1000\n" + wipe));
   ASSERT_EQ(file->layers.size(), 2u);
 
-  const auto rewrite = RewriteGcode(*file, {{{}, FromTheNearest(1)}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {{}, FromTheNearest(1)}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");
@@ -130,7 +130,7 @@ TEST(LayerWriter, BehindAHeadThatWasLostTheTravelIsWritten) {
   std::string written;
   writer.WritePaths(order, StartOfPaths(*file, order.front()), written);
 
-  const auto rewrite = RewriteGcode(*file, {{better}}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {better}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->unproven, "");

@@ -58,16 +58,12 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   const absl::StatusOr<InputJob> job =
       ReadGcodeJob(gcode::testing::TextOf(GetParam()), "part.gcode", options);
   ASSERT_TRUE(job.ok()) << job.status();
-  // The writer takes some layers from the one and some from the other.
   const std::vector<report::JobRun> runs = {RunOf(*job, "greedy"), RunOf(*job, "ni2opt")};
-  std::vector<gcode::FileOrder> tries;
-  for (const report::JobRun& run : runs) {
-    gcode::FileOrder& orders = tries.emplace_back();
-    for (size_t i = 0; i < job->layers.size(); ++i) {
-      orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
-    }
+  gcode::FileOrder found;
+  for (size_t i = 0; i < job->layers.size(); ++i) {
+    found.push_back(OrderOf(*job->gcode, i, runs[i % 2].result.layers[i]));
   }
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, found, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
   const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs[0], *rewrite);
@@ -97,8 +93,8 @@ TEST(DrawnGcode, ArcsAreRound) {
   const absl::StatusOr<InputJob> job = ReadGcodeJob(text, "part.gcode", options);
   ASSERT_TRUE(job.ok()) << job.status();
   const std::vector<report::JobRun> runs = {RunOf(*job, "ni2opt")};
-  const std::vector<gcode::FileOrder> tries = {{OrderOf(*job->gcode, 0, runs[0].result.layers[0])}};
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
+  const gcode::FileOrder found = {OrderOf(*job->gcode, 0, runs[0].result.layers[0])};
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, found, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
   const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs[0], *rewrite);
