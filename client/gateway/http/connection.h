@@ -4,13 +4,13 @@
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_CONNECTION_H_
 
 #include <array>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "client/gateway/http/awaitable.h"
 #include "client/gateway/http/tls_context.h"
 
 namespace traverse::gateway {
@@ -19,8 +19,6 @@ namespace traverse::gateway {
 class Connection {
  public:
   using Error = boost::system::error_code;
-  template <typename T>
-  using Awaitable = boost::asio::awaitable<T>;
   using Pieces = std::array<boost::asio::const_buffer, 3>;  // one behind the other
 
   // With TLS if `tls` is not null.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
@@ -19,6 +18,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/gateway/http/awaitable.h"
 #include "client/gateway/http/connection.h"
 #include "client/gateway/http/problem.h"
 #include "client/gateway/http/session.h"
@@ -117,7 +117,7 @@ class BeastServer : public HttpServer {
     return absl::OkStatus();
   }
 
-  net::awaitable<void> Accept() {
+  Awaitable<void> Accept() {
     net::steady_timer pause(*loop_);
     while (acceptor_.is_open()) {
       boost::system::error_code error;

@@ -42,7 +42,7 @@ Session::Session(std::shared_ptr<net::io_context> loop, std::unique_ptr<Connecti
 
 bool Session::IsInLoop() const { return loop_->get_executor().running_in_this_thread(); }
 
-net::awaitable<void> Session::Run() {
+Awaitable<void> Session::Run() {
   assert(IsInLoop());
   const auto self = shared_from_this();
   MayGiveWay();
@@ -103,7 +103,7 @@ void Session::OnTimer() {
   Cancel();
 }
 
-net::awaitable<bool> Session::ServeOne() {
+Awaitable<bool> Session::ServeOne() {
   HeadParser parser;
   parser.header_limit(limits_.max_head_bytes);
   parser.body_limit(std::numeric_limits<uint64_t>::max());  // the handler knows
@@ -147,13 +147,13 @@ HttpDecision Session::Decide(const HeadParser& parser) {
   return handler_(known);
 }
 
-net::awaitable<void> Session::ReadHead(HeadParser& parser, Error& error) {
+Awaitable<void> Session::ReadHead(HeadParser& parser, Error& error) {
   waits_for_head_ = true;
   while (!error && !parser.is_header_done()) co_await Parse(parser, error);
   waits_for_head_ = false;
 }
 
-net::awaitable<void> Session::Parse(HeadParser& parser, Error& error) {
+Awaitable<void> Session::Parse(HeadParser& parser, Error& error) {
   for (bool more = buffer_.size() == 0;; more = true) {
     if (more && !co_await ReadMore(parser, error)) co_return;
     buffer_.consume(parser.put(buffer_.data(), error));
@@ -161,7 +161,7 @@ net::awaitable<void> Session::Parse(HeadParser& parser, Error& error) {
   }
 }
 
-net::awaitable<bool> Session::ReadMore(HeadParser& parser, Error& error) {
+Awaitable<bool> Session::ReadMore(HeadParser& parser, Error& error) {
   constexpr size_t kMost = 65536;
   const size_t room = beast::read_size(buffer_, kMost);
   error = {};
@@ -182,7 +182,7 @@ net::awaitable<bool> Session::ReadMore(HeadParser& parser, Error& error) {
   co_return !error;
 }
 
-net::awaitable<std::optional<HttpResponse>> Session::ReadBody(HeadParser& parser, BodySink& sink) {
+Awaitable<std::optional<HttpResponse>> Session::ReadBody(HeadParser& parser, BodySink& sink) {
   Error error;
   const bool wait = beast::iequals(parser.get()[http::field::expect], "100-continue");
   if (wait && !parser.is_done() && buffer_.size() == 0) {
@@ -204,8 +204,8 @@ net::awaitable<std::optional<HttpResponse>> Session::ReadBody(HeadParser& parser
   co_return BodyFault(error, timed_out_, received);
 }
 
-net::awaitable<size_t> Session::ReadPiece(HeadParser& parser, uint64_t received,
-                                          std::vector<char>& piece, Error& error) {
+Awaitable<size_t> Session::ReadPiece(HeadParser& parser, uint64_t received,
+                                     std::vector<char>& piece, Error& error) {
   if (IsPlain(parser) && buffer_.size() == 0) {
     const uint64_t left = *parser.content_length() - received;
     const size_t got = co_await connection_->ReadSome(
@@ -231,7 +231,7 @@ std::function<void()> Session::Waker() {
   };
 }
 
-net::awaitable<bool> Session::WaitForReply() {
+Awaitable<bool> Session::WaitForReply() {
   constexpr auto kLook = std::chrono::milliseconds(250);
   StopTimer();
   wake_.expires_after(kLook);
@@ -243,7 +243,7 @@ net::awaitable<bool> Session::WaitForReply() {
   co_return !gone;
 }
 
-net::awaitable<bool> Session::Answer(unsigned version, bool head_only, bool keep) {
+Awaitable<bool> Session::Answer(unsigned version, bool head_only, bool keep) {
   const std::shared_ptr<ReplyQueue> reply = reply_;
   std::optional<HttpResponse> head = reply->TakeHead();
   while (!head) {
@@ -267,8 +267,8 @@ net::awaitable<bool> Session::Answer(unsigned version, bool head_only, bool keep
   co_return keep&& chunked;
 }
 
-net::awaitable<bool> Session::Respond(const HttpResponse& response, bool head_only,
-                                      unsigned version, bool keep) {
+Awaitable<bool> Session::Respond(const HttpResponse& response, bool head_only, unsigned version,
+                                 bool keep) {
   const std::string* text = std::get_if<std::string>(&response.body);
   const uint64_t size = text != nullptr
                             ? text->size()
@@ -278,7 +278,7 @@ net::awaitable<bool> Session::Respond(const HttpResponse& response, bool head_on
   co_return keep;
 }
 
-net::awaitable<bool> Session::WriteBody(const HttpBody& body, bool chunked) {
+Awaitable<bool> Session::WriteBody(const HttpBody& body, bool chunked) {
   const absl::Time began = absl::Now();
   if (const std::string* text = std::get_if<std::string>(&body)) {
     for (size_t at = 0; at < text->size(); at += kPiece) {
@@ -300,7 +300,7 @@ net::awaitable<bool> Session::WriteBody(const HttpBody& body, bool chunked) {
   co_return true;
 }
 
-net::awaitable<bool> Session::WritePiece(std::string_view piece, bool chunked) {
+Awaitable<bool> Session::WritePiece(std::string_view piece, bool chunked) {
   Error error;
   if (chunked) {
     const std::string size = absl::StrCat(absl::Hex(piece.size()), "\r\n");
@@ -313,14 +313,14 @@ net::awaitable<bool> Session::WritePiece(std::string_view piece, bool chunked) {
   co_return !error;
 }
 
-net::awaitable<bool> Session::WriteText(std::string_view text) {
+Awaitable<bool> Session::WriteText(std::string_view text) {
   SetTimer(limits_.idle_time);
   Error error;
   co_await connection_->Write(OnePiece(text), error);
   co_return !error;
 }
 
-net::awaitable<void> Session::Linger() {
+Awaitable<void> Session::Linger() {
   constexpr absl::Duration kPatience = absl::Seconds(3);
   Error error;
   if (!connection_->has_tls()) {

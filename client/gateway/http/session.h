@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_SESSION_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_SESSION_H_
 
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "absl/time/time.h"
+#include "client/gateway/http/awaitable.h"
 #include "client/gateway/http/connection.h"
 #include "client/gateway/http/heads.h"
 #include "client/gateway/http/http_server.h"
@@ -33,7 +33,7 @@ class Session : public std::enable_shared_from_this<Session> {
           const HttpLimits& limits, const HttpHandler& handler, std::string peer_host);
 
   // Runs until the connection ends.
-  boost::asio::awaitable<void> Run();
+  Awaitable<void> Run();
 
   // Ends it if it waits for a request; otherwise it ends after the current one.
   void Drain();
@@ -49,8 +49,6 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   using Clock = std::chrono::steady_clock;
   using Error = boost::system::error_code;
-  template <typename T>
-  using Awaitable = boost::asio::awaitable<T>;
 
   bool IsInLoop() const;
 
