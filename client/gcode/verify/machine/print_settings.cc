@@ -46,10 +46,6 @@ void PrintSettings::Set(size_t slot, uint64_t value) {
   changed_ = true;
 }
 
-void PrintSettings::SetWord(const CommandWords& words, char letter, size_t slot) {
-  if (words.Has(letter)) Set(slot, static_cast<uint64_t>(words[letter]) + 1);
-}
-
 bool NamesFeature(std::string_view comment) {
   return Begins(comment, ";TYPE:") || Begins(comment, "; FEATURE:");
 }
@@ -125,56 +121,51 @@ uint64_t PrintSettings::NamedDigest(bool of_fans) const {
   return digest;
 }
 
+// The commands whose words each are a setting, whichever of them are given.
+bool PrintSettings::SetWords(int number, const CommandWords& words) {
+  struct Command {
+    int number;
+    std::string_view letters;  // no others
+    std::vector<std::pair<char, size_t>> slots;
+    char needs = 0;
+  };
+  static const std::vector<Command> commands = {
+      {201, "XYZE", {{'X', kMaxAccelX}, {'Y', kMaxAccelY}, {'Z', kLimits}, {'E', kLimits + 1}}},
+      {202, "XY", {{'X', kMaxTravelX}, {'Y', kMaxTravelY}}},
+      {203,
+       "XYZE",
+       {{'X', kLimits + 2}, {'Y', kLimits + 3}, {'Z', kLimits + 4}, {'E', kLimits + 5}}},
+      {204,
+       "SPTR",
+       {{'S', kAccelPrint},
+        {'P', kAccelPrint},
+        {'S', kAccelTravel},
+        {'T', kAccelTravel},
+        {'R', kAccelRetract}}},
+      {205,
+       "XYZEJ",
+       {{'X', kJerkX}, {'Y', kJerkY}, {'Z', kLimits + 6}, {'E', kLimits + 7}, {'J', kLimits + 8}}},
+      // Repetier's jerk in the plane; without X how other machines retract at G10.
+      {207, "XZ", {{'X', kJerkX}, {'X', kJerkY}, {'Z', kLimits + 6}}, 'X'},
+      {215, "XY", {{'X', kJerkX}, {'Y', kJerkY}}},
+      {220, "S", {{'S', kSpeed}}},
+      {566, "XYZE", {{'X', kJerkX}, {'Y', kJerkY}, {'Z', kLimits + 6}, {'E', kLimits + 7}}},
+  };
+  for (const Command& command : commands) {
+    if (command.number != number || !words.OnlyFrom(command.letters)) continue;
+    if (command.needs != 0 && !words.Has(command.needs)) continue;
+    for (const auto& [letter, slot] : command.slots) {
+      if (words.Has(letter)) Set(slot, static_cast<uint64_t>(words[letter]) + 1);
+    }
+    return true;
+  }
+  return false;
+}
+
 bool PrintSettings::SetByM(int number, const CommandWords& words) {
   if (number == 106 || number == 107) return SetFan(number, words);
   if (words.set == 0) return false;
-  if (number == 204 && words.OnlyFrom("SPTR")) {
-    SetWord(words, 'S', kAccelPrint);
-    SetWord(words, 'P', kAccelPrint);
-    SetWord(words, 'S', kAccelTravel);
-    SetWord(words, 'T', kAccelTravel);
-    SetWord(words, 'R', kAccelRetract);
-    return true;
-  }
-  if ((number == 205 && words.OnlyFrom("XYZEJ")) || (number == 566 && words.OnlyFrom("XYZE")) ||
-      (number == 215 && words.OnlyFrom("XY"))) {
-    SetWord(words, 'X', kJerkX);
-    SetWord(words, 'Y', kJerkY);
-    SetWord(words, 'Z', kLimits + 6);
-    SetWord(words, 'E', kLimits + 7);
-    SetWord(words, 'J', kLimits + 8);
-    return true;
-  }
-  if (number == 207 && words.Has('X') && words.OnlyFrom("XZ")) {
-    // Repetier's jerk in the plane; with other words how other machines retract at G10.
-    SetWord(words, 'X', kJerkX);
-    SetWord(words, 'X', kJerkY);
-    SetWord(words, 'Z', kLimits + 6);
-    return true;
-  }
-  if (number == 201 && words.OnlyFrom("XYZE")) {
-    SetWord(words, 'X', kMaxAccelX);
-    SetWord(words, 'Y', kMaxAccelY);
-    SetWord(words, 'Z', kLimits);
-    SetWord(words, 'E', kLimits + 1);
-    return true;
-  }
-  if (number == 202 && words.OnlyFrom("XY")) {
-    SetWord(words, 'X', kMaxTravelX);
-    SetWord(words, 'Y', kMaxTravelY);
-    return true;
-  }
-  if (number == 203 && words.OnlyFrom("XYZE")) {
-    SetWord(words, 'X', kLimits + 2);
-    SetWord(words, 'Y', kLimits + 3);
-    SetWord(words, 'Z', kLimits + 4);
-    SetWord(words, 'E', kLimits + 5);
-    return true;
-  }
-  if (number == 220 && words.OnlyFrom("S")) {
-    SetWord(words, 'S', kSpeed);
-    return true;
-  }
+  if (SetWords(number, words)) return true;
   if (number == 221 && words.Has('S') && words.OnlyFrom("ST")) {
     return SetOfTool(number, words, 'T', kFlow);
   }

@@ -114,7 +114,7 @@ class PrintSettings {
   };
 
   void Set(size_t slot, uint64_t value);
-  void SetWord(const CommandWords& words, char letter, size_t slot);
+  bool SetWords(int number, const CommandWords& words);
   bool SetFan(int number, const CommandWords& words);
   bool SetOfTool(int number, const CommandWords& words, char tool, size_t slot);
   bool SetNamed(const std::vector<NamedValue>& values);
