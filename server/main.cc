@@ -11,11 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "server/ops/daemon.h"
 #include "server/server.h"
 #include "server/server_flags.h"
-#include "server/version.h"
 
 namespace traverse {
 namespace {
@@ -46,11 +44,7 @@ int Run(const Daemon& daemon) {
     std::printf("metrics on port %d\n", (*server)->metrics_port());
   std::fflush(stdout);
   JobLog& log = *(*server)->core().files.log;
-  log.Event(JobLog::Level::kInfo, "started",
-            {{"version", kVersion}, {"port", absl::StrCat((*server)->port())}});
-  if (const std::string few = FewFiles(); !few.empty()) {
-    log.Event(JobLog::Level::kWarning, "few_files", {{"message", few}});
-  }
+  daemon.LogStart(log, (*server)->port(), FewFiles());
 
   const int signal = daemon.WaitForEnd(log, [&] { (*server)->Reload(); });
   const bool port_lost = signal == kPortLost;

@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "client/gateway/gateway.h"
 #include "client/gateway/gateway_flags.h"
 #include "server/ops/daemon.h"
-#include "server/version.h"
 
 namespace traverse::gateway {
 namespace {
@@ -31,11 +29,7 @@ int Run(const Daemon& daemon) {
   }
   std::fflush(stdout);
   JobLog& log = *(*gateway)->core().files.log;
-  log.Event(JobLog::Level::kInfo, "started",
-            {{"version", kVersion}, {"port", absl::StrCat((*gateway)->http_port())}});
-  if (!options->few_files.empty()) {
-    log.Event(JobLog::Level::kWarning, "few_files", {{"message", options->few_files}});
-  }
+  daemon.LogStart(log, (*gateway)->http_port(), options->few_files);
 
   const int signal = daemon.WaitForEnd(log, [&] { (*gateway)->Reload(); });
   daemon.BeginDraining(signal, log);

@@ -8,7 +8,9 @@
 #include <thread>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "server/ops/memory.h"
+#include "server/version.h"
 
 namespace traverse {
 namespace {
@@ -36,6 +38,12 @@ Daemon::Daemon(std::string name, int also_ends) : name_(std::move(name)), also_e
 int Daemon::Fail(const absl::Status& status) const {
   std::fprintf(stderr, "%s: %s\n", name_.c_str(), std::string(status.message()).c_str());
   return absl::IsInvalidArgument(status) ? kExitUsage : kExitStart;
+}
+
+void Daemon::LogStart(JobLog& log, int port, const std::string& few_files) const {
+  log.Event(JobLog::Level::kInfo, "started", {{"version", kVersion}, {"port", absl::StrCat(port)}});
+  if (few_files.empty()) return;
+  log.Event(JobLog::Level::kWarning, "few_files", {{"message", few_files}});
 }
 
 int Daemon::WaitForEnd(JobLog& log, const std::function<void()>& reload) const {

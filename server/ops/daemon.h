@@ -27,6 +27,10 @@ class Daemon {
   // Prints `status` in one line. Returns kExitUsage for InvalidArgument, else kExitStart.
   int Fail(const absl::Status& status) const;
 
+  // Logs that work begins, on `port`, and `few_files`: of what the limit of open files leaves room
+  // for less than flags say, in words; empty: of nothing.
+  void LogStart(JobLog& log, int port, const std::string& few_files) const;
+
   // Waits for a signal that ends the daemon, and returns it. Calls `reload` at each SIGHUP.
   int WaitForEnd(JobLog& log, const std::function<void()>& reload) const;
 
