@@ -8,11 +8,16 @@ import re
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE))
+
+from tests.support import short_part  # noqa: E402
+
 BUILD = pathlib.Path(os.environ["TRAVERSE_BUILD"])
 SAMPLES = SOURCE / "deploy" / "samples"
 
@@ -40,11 +45,11 @@ class Commands(unittest.TestCase):
         (self.folder / "build/release").symlink_to(BUILD)
         (self.folder / "deploy").symlink_to(SOURCE / "deploy")
         shutil.copy(SAMPLES / "part2.damat", self.folder / "part.damat")
-        shutil.copy(SAMPLES / "clusters13.gcode", self.folder / "part.gcode")
+        short_part.write(self.folder / "part.gcode")
         with zipfile.ZipFile(self.folder / "plates.gcode.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr("[Content_Types].xml", "<Types/>")
             for plate in (1, 2):
-                archive.write(SAMPLES / "clusters13.gcode", f"Metadata/plate_{plate}.gcode")
+                archive.write(self.folder / "part.gcode", f"Metadata/plate_{plate}.gcode")
 
     def run_block(self, block):
         """Runs it, and ends what it left in the background."""
@@ -98,7 +103,7 @@ class Commands(unittest.TestCase):
                 self.assertIsNone(re.search(r"(?m)^(build/release/|traverse |traverse-)", block), block)
 
     def test_of_the_pictures(self):
-        subprocess.run([SOURCE / "client/pictures/draw.sh", self.folder], check=True, timeout=300,
+        subprocess.run([SOURCE / "client/pictures/draw.sh", self.folder, "--strategy=none"], check=True, timeout=300,
                        env={**os.environ, "TRAVERSE": str(BUILD / "client/traverse")})
         for picture in (SOURCE / "client/pictures").glob("*.svg"):
             self.assertTrue((self.folder / picture.name).exists(), picture.name)

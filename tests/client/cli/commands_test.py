@@ -20,7 +20,7 @@ class Views(CommandLine):
         gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
         for name, arguments in {
             "damat.svg": ["optimize", SMALL],
-            "gcode.svg": ["optimize", gcode, "-o", self.path("out.gcode")],
+            "gcode.svg": ["optimize", gcode, "-o", self.path("out.gcode"), "--strategy=greedy"],
             "compare.svg": ["compare", gcode, "--strategies=greedy", "--layers=3-4"],
         }.items():
             self.run_traverse(*arguments, "--quiet", f"--picture={self.path(name)}")
@@ -126,7 +126,8 @@ class Views(CommandLine):
         gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
         page = self.path("page.html")
         routes = self.path("routes.json")
-        out = self.succeed("optimize", gcode, "-o", self.path("out.gcode"), f"--report={page}", f"--json={routes}")
+        out = self.succeed("optimize", gcode, "-o", self.path("out.gcode"), f"--report={page}", f"--json={routes}",
+                           "--strategy=greedy")
         before, after = self.scene(page)["routes"]
         self.assertIn(f"travel {before['travel'] / 1000:.2f} -> {after['travel'] / 1000:.2f} m", out)
         self.assertIn(f"retractions {before['retractions']} -> {after['retractions']},", out)
@@ -148,7 +149,8 @@ class Views(CommandLine):
         os.mkdir(folder)
         sliced = self.put("part.gcode", read(os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")))
         before = read(sliced)
-        self.assertIn("folder.png: Is a directory", self.fail_with(INPUT, "optimize", sliced, "--quiet", f"--picture={folder}"))
+        said = self.fail_with(INPUT, "optimize", sliced, "--quiet", "--strategy=greedy", f"--picture={folder}")
+        self.assertIn("folder.png: Is a directory", said)
         self.assertEqual(read(sliced), before)
         self.assertEqual(sorted(os.listdir(self.folder)), ["folder.png", "part.gcode"])
 
