@@ -15,6 +15,7 @@
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/layer_plan.h"
+#include "client/gcode/read/custom_gcode.h"
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/text/text.h"
 
@@ -212,12 +213,11 @@ std::string Place(const GcodeFile& file, Offset at) {
 // place.
 struct CauseWords {
   const char* holds;
-  const char* frees;
+  const char* frees;  // null for lines that may be of the slicer or of its user (WithoutLine)
   const char* under_free = nullptr;  // instead, where --policy=free is asked for already
 };
 constexpr std::array<CauseWords, kCauses> kWords = {{
-    {"stay beside commands that are not known here, the first of them $0",
-     "taken out of the slicer's custom G-code, such commands would hold nothing"},
+    {"stay beside commands that are not known here, the first of them $0", nullptr},
     {"stay on one side of a change of tool or filament, the first of them in $1",
      "fewer such changes within a layer would hold less"},
     {"stay beside the wipe tower, which nothing passes",
@@ -228,10 +228,9 @@ constexpr std::array<CauseWords, kCauses> kWords = {{
      "the first of them in $1",
      "with spiral vase off in the slicer more could move"},
     {"stay within the label of an object, the first of which is $0",
-     "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") paths of "
-     "several could mix"},
-    {"stay on one side of a line that nothing passes, the first of them $0",
-     "taken out of the slicer's custom G-code, such lines would hold nothing"},
+     "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\"), where it "
+     "has such a setting, paths of several could mix"},
+    {"stay on one side of a line that nothing passes, the first of them $0", nullptr},
     {"stay on one side of a change of the fan",
      "--allow=fan_order or --policy=free would free more, or the same fan speed for bridges and "
      "overhangs in the slicer"},
@@ -260,6 +259,19 @@ std::string OfOne(std::string_view holds) {
   return absl::StrCat(std::string(holds.substr(0, verb)), "s", std::string(holds.substr(verb)));
 }
 
+// Who writes the line at `at`, and may leave it out.
+std::string WithoutLine(const GcodeFile& file, Offset at) {
+  const std::string_view line = TrimBlanks(LineAt(file.text, at).Text(file.text));
+  const std::string_view command = line.substr(0, line.find_first_of(" \t;"));
+  const auto setting = SettingThatAdds(file.text, command);
+  if (!setting) return "without it, in custom G-code or a script, they would be free";
+  if (setting->empty()) {
+    return "the slicer's custom G-code has none, so no setting of that frees them";
+  }
+  return absl::StrCat("without it in the slicer's `", std::string(*setting),
+                      "` they would be free");
+}
+
 std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tallies& tallies) {
   const Tally& tally = tallies.of[cause];
   const bool line = tally.at != UINT32_MAX;
@@ -272,8 +284,10 @@ std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tall
     absl::StrAppend(&text, ", and whole objects keep their places, because ",
                     std::string(tallies.objects));
   }
-  const bool free = IsFree(policy) && kWords[cause].under_free != nullptr;
-  return absl::StrCat(text, "; ", free ? kWords[cause].under_free : kWords[cause].frees);
+  const CauseWords& words = kWords[cause];
+  if (words.frees == nullptr) return absl::StrCat(text, "; ", WithoutLine(file, tally.at));
+  const bool free = IsFree(policy) && words.under_free != nullptr;
+  return absl::StrCat(text, "; ", free ? words.under_free : words.frees);
 }
 
 // What holds besides what can be counted by paths; `searched`: though orders were looked for.
@@ -331,6 +345,32 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
     if (lines.size() < most) lines.push_back(gcode::TextOf(file, policy, cause, all));
   }
   if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy, !counted.empty()));
+  return lines;
+}
+
+std::vector<std::string> DescribeOddLines(const GcodeFile& file) {
+  std::vector<std::string> lines;
+  const auto note = [&](const gcode::OddLines& odd, const char* one, const char* more,
+                        const char* why) {
+    if (odd.count == 0) return;
+    const std::string_view words = odd.count == 1 ? one : more;
+    lines.push_back(absl::StrCat(odd.count, " ", std::string(words), " (first in ",
+                                 gcode::Place(file, odd.at), ")", why));
+  };
+  const auto segments = static_cast<int64_t>(file.ends.size());
+  if (file.relative_moves.count > segments) {
+    note(file.relative_moves, "move that prints stays in place, being relative (G91)",
+         "moves that print stay in place, being relative (G91)",
+         "; absolute coordinates (G90) in the slicer would let more move");
+  }
+  if (file.empty_moves.count > segments) {
+    note(file.empty_moves, "move states an E that pushes nothing",
+         "moves state an E that pushes nothing",
+         "; no path is made of that, so it stays in place; with more flow, or another filament "
+         "diameter, in the slicer it would print");
+  }
+  note(file.unread_moves, "line begins as a move does, but cannot be read",
+       "lines begin as moves do, but cannot be read", ", and nothing passes such a line");
   return lines;
 }
 

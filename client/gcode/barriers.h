@@ -25,6 +25,11 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
                                           const std::vector<bool>& counted = {},
                                           size_t most = kMostBarriers);
 
+// A line for each kind of moves that no path is made of and that therefore hold what they print:
+// lines that cannot be read; relative moves (G91), and moves whose E word pushes nothing, where
+// they are more than those that make paths.
+std::vector<std::string> DescribeOddLines(const GcodeFile& file);
+
 }  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_GCODE_BARRIERS_H_

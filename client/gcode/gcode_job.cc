@@ -311,6 +311,7 @@ absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job, const GcodeOp
                                                totals.crossings, totals.open_crossings));
   add("estimated print time",
       gcode::Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, without heating)");
+  for (std::string& odd : DescribeOddLines(*job.gcode)) add("held", std::move(odd));
   for (std::string& barrier : DescribeBarriers(*job.gcode, options.policy, options.allow)) {
     add("held", std::move(barrier));
   }

@@ -261,11 +261,7 @@ class Rewriter {
     if (!chosen.blocked.empty()) {
       rewrite.blocked = PlaceOf(file_.blocks[file_.layers[chosen.blocked[0]].first_block].begin);
     }
-    rewrite.unread_moves = file_.unread_moves;
-    if (file_.unread_moves > 0) rewrite.unread = PlaceOf(file_.unread_at);
-    if (file_.relative_moves <= static_cast<int64_t>(file_.ends.size())) return;
-    rewrite.relative_moves = file_.relative_moves;
-    rewrite.relative = PlaceOf(file_.relative_at);
+    rewrite.odd_lines = DescribeOddLines(file_);
   }
 
   std::string PlaceOf(gcode::Offset at) const {
@@ -398,12 +394,7 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
        absl::StrCat(" travel that could be shorter, because something finished that stands higher "
                     "is in the way of the head: ",
                     rewrite.blocked, "; objects farther apart in the slicer leave it more room"));
-  note(rewrite.relative_moves, "move that prints stays", "moves that print stay",
-       absl::StrCat(" in place, being relative (G91): ", rewrite.relative,
-                    "; absolute coordinates (G90) in the slicer would let more move"));
-  note(rewrite.unread_moves, "line begins", "lines begin",
-       absl::StrCat(" as moves do, but cannot be read, and nothing passes such a line: ",
-                    rewrite.unread));
+  left.insert(left.end(), rewrite.odd_lines.begin(), rewrite.odd_lines.end());
   left.insert(left.end(), rewrite.barriers.begin(), rewrite.barriers.end());
   return left;
 }

@@ -46,19 +46,12 @@ struct GcodeRewrite {
   int64_t layers_blocked = 0;
   std::string blocked;
 
-  // Moves that stay where they are because they are relative to each other, if those are most of
-  // what prints, and the first of them: "part.gcode:118".
-  int64_t relative_moves = 0;
-  std::string relative;
-
   // If some layers are left as sliced: what keeps their paths in their places (barriers.h), and
   // which statements of progress cannot be true (stated_progress.h).
   std::vector<std::string> barriers;
 
-  // Lines that begin as moves do and cannot be read, so that no path changes places with one beyond
-  // them, and the first of them: "part.gcode:118".
-  int64_t unread_moves = 0;
-  std::string unread;
+  // Lines of moves that no path is made of (barriers.h).
+  std::vector<std::string> odd_lines;
 };
 
 struct RewriteOptions : gcode::ChoiceOptions {

@@ -96,6 +96,16 @@ struct Layer {
   const char* fault = nullptr;  // of a line in it or on the travel to or from it: it stays as it is
 };
 
+// How many lines of a kind there are, and the first of them.
+struct OddLines {
+  int64_t count = 0;
+  Offset at = 0;
+
+  void Add(Offset line) {
+    if (count++ == 0) at = line;
+  }
+};
+
 }  // namespace gcode
 
 struct GcodeFile {
@@ -122,13 +132,11 @@ struct GcodeFile {
   // is none.
   gcode::Offset script_end = 0;
 
-  // Moves that print under G91, none of which is in a block, and the first of them.
-  int64_t relative_moves = 0;
-  gcode::Offset relative_at = 0;
-
-  // Lines that begin as moves do and cannot be read, which nothing passes, and the first of them.
-  int64_t unread_moves = 0;
-  gcode::Offset unread_at = 0;
+  // Moves of which none is in a block: those that print under G91, those whose E word pushes
+  // nothing, and lines that begin as moves do and cannot be read.
+  gcode::OddLines relative_moves;
+  gcode::OddLines empty_moves;
+  gcode::OddLines unread_moves;
 
   // Begins of the lines of progress (machine/progress_line.h), ascending.
   std::vector<gcode::Offset> progress;

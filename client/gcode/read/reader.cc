@@ -125,12 +125,10 @@ absl::Status ReadBlocks(GcodeFile& file) {
     if (++lines % kLinesToLimit == 0 && file.limit.Ended()) return file.limit.status();
     style.Take(step, file.text);
     builder.Take(step, before, interpreter);
-    if (PrintsRelative(step, interpreter.state()) && file.relative_moves++ == 0) {
-      file.relative_at = step.line.begin;
-    }
-    if (!WordsOfUnreadMove(step, file.text).empty() && file.unread_moves++ == 0) {
-      file.unread_at = step.line.begin;
-    }
+    const Offset at = step.line.begin;
+    if (PrintsRelative(step, interpreter.state())) file.relative_moves.Add(at);
+    if (step.kind == StepKind::kTravel && step.command.Has('E')) file.empty_moves.Add(at);
+    if (!WordsOfUnreadMove(step, file.text).empty()) file.unread_moves.Add(at);
   }
   builder.Finish();
   style.Finish(file);

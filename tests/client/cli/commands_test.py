@@ -64,8 +64,8 @@ class Views(CommandLine):
         lines[place] = lines[place].replace("G1 ", "G1 (here) ")
         name = self.put("odd.gcode", "\n".join(lines) + "\n")
         said = self.succeed("optimize", name, "-o", self.path("out.gcode"), "--strategy=greedy")
-        self.assertIn("1 line begins as moves do, but cannot be read, and nothing passes such a line: "
-                      f"{name}:{place + 1}\n", said)
+        self.assertIn(f"1 line begins as a move does, but cannot be read (first in {name}:{place + 1}), "
+                      "and nothing passes such a line\n", said)
 
     def test_what_is_allowed_beside_the_policy(self):
         gcode = os.path.join(TESTS, "data", "gcode", "sl_clusters13_brim.gcode.xz")

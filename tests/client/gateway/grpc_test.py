@@ -115,8 +115,8 @@ class Calls(OnGateway):
         place = [i for i, line in enumerate(lines) if line.startswith("G1 X")][10]
         lines[place] = lines[place].replace("G1 ", "G1 (here) ")
         left = self.rewrite("\n".join(lines).encode(), name="odd.gcode")[2].left
-        self.assertIn("1 line begins as moves do, but cannot be read, and nothing passes such a line: "
-                      f"odd.gcode:{place + 1}.", left)
+        self.assertIn(f"1 line begins as a move does, but cannot be read (first in odd.gcode:{place + 1}), "
+                      "and nothing passes such a line.", left)
 
     def test_the_machine_and_the_container_are_those_of_the_command(self):
         printer = "[printer]\nmax_velocity: 300\nmax_accel: 150\n"

@@ -46,7 +46,11 @@ std::string BarriersOf(const std::string& text, Policy policy = Policy::kSafe,
 TEST(DescribeBarriers, SayWhatHoldsAndWhatWouldFree) {
   EXPECT_THAT(BarriersOf(Lines("M400\n")),
               AllOf(HasSubstr("paths in 3 layers"), HasSubstr("`M400` in part.gcode:14"),
-                    HasSubstr("custom G-code")));
+                    HasSubstr("in custom G-code or a script")));
+  EXPECT_THAT(BarriersOf(Lines("M400 ; wait\n") + "; layer_gcode = M117\\nM400\n"),
+              HasSubstr("without it in the slicer's `layer_gcode`"));
+  EXPECT_THAT(BarriersOf(Lines("M400\n") + "; layer_gcode = M117\n"),
+              HasSubstr("custom G-code has none"));
   EXPECT_THAT(BarriersOf(Lines("M117 here\n")), HasSubstr("`M117 here` in part.gcode:14"));
   EXPECT_THAT(BarriersOf(Lines("T1\n")), HasSubstr("change of tool"));
 }

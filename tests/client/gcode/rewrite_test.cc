@@ -27,7 +27,10 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small files
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 TEST(RewriteGcode, WritesTheBetterOrderAndSaysSoBehindTheHead) {
@@ -210,10 +213,9 @@ TEST(RewriteGcode, RelativeMovesAreNamedIfMostOfThePrintStaysForThem) {
     EXPECT_TRUE(file.ok());
     return *RewriteGcode(**file, FileOrder((*file)->layers.size()), {});
   };
-  const GcodeRewrite mostly = rewritten(begin + relative + "G90\nM84\n");
-  EXPECT_EQ(mostly.relative_moves, 2);
-  EXPECT_EQ(mostly.relative, "part.gcode:7");
-  EXPECT_EQ(rewritten(begin + "G1 Y9 E.3\n" + relative).relative_moves, 0);
+  EXPECT_THAT(rewritten(begin + relative + "G90\nM84\n").odd_lines,
+              ElementsAre(AllOf(HasSubstr("2 moves that print stay"), HasSubstr("part.gcode:7"))));
+  EXPECT_THAT(rewritten(begin + "G1 Y9 E.3\n" + relative).odd_lines, IsEmpty());
 }
 
 TEST(RewriteGcode, MovesThatCannotBeReadAreNamed) {
@@ -222,9 +224,25 @@ TEST(RewriteGcode, MovesThatCannotBeReadAreNamed) {
   const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder, {}}, OptionsWithVersion());
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
-  EXPECT_EQ(rewrite->unread_moves, 2);
   const auto lines = std::count(text.begin(), text.end(), '\n');
-  EXPECT_EQ(rewrite->unread, absl::StrCat("part.gcode:", lines - 2));
+  EXPECT_THAT(rewrite->odd_lines,
+              ElementsAre(AllOf(HasSubstr("2 lines begin as moves do"),
+                                HasSubstr(absl::StrCat("part.gcode:", lines - 2)))));
+}
+
+TEST(RewriteGcode, MovesThatPushNothingAreNamedIfTheyAreMost) {
+  const std::string path = "G1 X5 Y5 F1200\nG1 X9 E.3\n";
+  const std::string empty = "G1 X9 Y9 E0\nG1 X5 Y9 E0\n";
+  const auto odd_lines = [](const std::string& text) {
+    const auto rewrite = RewriteGcode(*Read("M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n" + text),
+                                      FileOrder(1), OptionsWithVersion());
+    EXPECT_TRUE(rewrite.ok()) << rewrite.status();
+    return rewrite->odd_lines;
+  };
+  EXPECT_THAT(odd_lines(path + empty),
+              ElementsAre(AllOf(HasSubstr("2 moves state an E that pushes nothing"),
+                                HasSubstr("part.gcode:6"), HasSubstr("slicer"))));
+  EXPECT_THAT(odd_lines(path + "G1 X9 Y8 E.3\n" + empty), IsEmpty());
 }
 
 TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
