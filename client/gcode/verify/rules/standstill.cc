@@ -1,5 +1,6 @@
 // Filament pushed at a standstill, beyond what had been retracted or short of it, is the same
-// multiset of section and amount; if nothing had been retracted, at the same X and Y.
+// multiset of tool, layer and amount; if nothing had been retracted, in the same section at the
+// same X and Y.
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,29 @@
 namespace traverse::gcode {
 namespace {
 
-// Section, amount and, if nothing had been retracted, the position.
-using Key = std::tuple<uint32_t, Micro, bool, int64_t, int64_t>;
+// How many layers of `chunk` end before that section; what has no paths belongs to the layer
+// behind.
+uint32_t LayerOf(const TraceChunk& chunk, uint32_t section) {
+  const auto at = std::lower_bound(chunk.layers.begin(), chunk.layers.end(), section,
+                                   [&chunk](const TraceLayer& layer, uint32_t of) {
+                                     return chunk.sections[layer.end_section - 1].index < of;
+                                   });
+  return static_cast<uint32_t>(at - chunk.layers.begin());
+}
 
-Key KeyOf(const Standstill& event) {
+// Tool, amount and, if nothing had been retracted, the section and the position; else the layer.
+using Key = std::tuple<uint64_t, uint32_t, Micro, bool, int64_t, int64_t>;
+
+Key KeyOf(const TraceChunk& chunk, const Standstill& event) {
   constexpr Micro kSlack = VerifyMachine::kSlack;
   const auto um = [](double mm) { return static_cast<int64_t>(mm * 1000 + (mm < 0 ? -0.5 : 0.5)); };
   const Micro half = event.amount < 0 ? -kSlack / 2 : kSlack / 2;
-  return {event.section, (event.amount + half) / kSlack, event.fresh,
-          event.fresh ? um(event.at.x) : 0, event.fresh ? um(event.at.y) : 0};
+  return {event.tool,
+          event.fresh ? event.section : LayerOf(chunk, event.section),
+          (event.amount + half) / kSlack,
+          event.fresh,
+          event.fresh ? um(event.at.x) : 0,
+          event.fresh ? um(event.at.y) : 0};
 }
 
 // `amount` in 1e-6 mm.
@@ -35,9 +50,9 @@ std::string Pushes(Micro amount) {
 
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
   std::map<Key, std::vector<uint32_t>> lines;
-  for (const Standstill& event : was.standstills) lines[KeyOf(event)].push_back(event.line);
+  for (const Standstill& event : was.standstills) lines[KeyOf(was, event)].push_back(event.line);
   for (const Standstill& event : is.standstills) {
-    const auto known = lines.find(KeyOf(event));
+    const auto known = lines.find(KeyOf(is, event));
     if (known != lines.end() && !known->second.empty()) {
       known->second.pop_back();
       continue;
@@ -51,7 +66,7 @@ void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
     for (const uint32_t line : left) {
       breaks.push_back({VerifyRule::kStandstill, line, 0, -1,
                         absl::StrFormat("the original %s, which is missing",
-                                        Pushes(std::get<1>(key) * VerifyMachine::kSlack))});
+                                        Pushes(std::get<2>(key) * VerifyMachine::kSlack))});
     }
   }
 }

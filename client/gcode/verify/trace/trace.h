@@ -114,6 +114,7 @@ struct TraceCommand {
 struct Standstill {
   uint32_t section = 0;
   uint32_t line = 0;
+  uint64_t tool = 0;
   Micro amount = 0;
   bool fresh = false;  // nothing had been retracted
   Point at;

@@ -328,7 +328,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   const Micro surplus = machine.inches() ? InMm(line.surplus) : line.surplus;
   const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
   if (line.primes && std::abs(surplus) > kRounding) {
-    chunk_.standstills.push_back({section, move.line, surplus, fresh, move.to});
+    chunk_.standstills.push_back({section, move.line, move.tool, surplus, fresh, move.to});
   }
   pending_.push_back(move);
 }

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -31,6 +32,26 @@ TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
   // It comes with the travel, wherever that leads.
   const std::string turned = With(With(two, "X0 Y5", "X9 Y5"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
+}
+
+// A label divides the layer, and another order retracts for another path. It does so for no other
+// layer, and for no other tool.
+TEST(VerifyStandstill, WhatIsPushedMoreThanPulledStaysInItsLayer) {
+  const std::string plain = "G1 X0 Y5 F9000\n";
+  const std::string more = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1.02 F2100\n";
+  const auto print = [](const std::string& first, const std::string& between,
+                        const std::string& second) {
+    const std::string line = "G1 X9 Y5 E.3 F1200\nG1 X0 Y0 F9000\nG1 X9 Y0 E.3 F1200\n";
+    return absl::StrCat(kHead, ";TYPE:Internal infill\n", first, line, between, second, line);
+  };
+  constexpr uint32_t kRule = RuleBit(VerifyRule::kStandstill);
+  for (const char* between : {"M104 S200\n", "; printing object a\n"}) {
+    EXPECT_EQ(Broken(print(more, between, plain), print(plain, between, more), {}, kRule), "");
+  }
+  for (const char* between : {";LAYER_CHANGE\nG1 Z.4 F9000\n", "T1\n"}) {
+    EXPECT_EQ(Broken(print(more, between, plain), print(plain, between, more), {}, kRule),
+              "standstill");
+  }
 }
 
 TEST(VerifyStandstill, WhatIsPushedLessThanPulledIsPushedAsOften) {
