@@ -232,11 +232,13 @@ bool IsUsualSlope(const Observations& was, const LiftLog& log, const TravelProfi
   return travel.end == travel.first + 1 && BeginsWithUsualSlope(was, log, travel);
 }
 
-// True if the travel begins so and is not low behind that slope: the shorter it is, the larger is
-// the share of the slope.
+// True if the travel begins so, or is all of it a slope where others begin so, and is not low
+// behind that slope: the shorter it is, the larger is the share of the slope.
 bool SlopesAtOnce(const Observations& was, const LiftLog& log, const TravelProfile& travel,
                   float lift) {
-  if (!BeginsWithUsualSlope(was, log, travel)) return false;
+  const TravelProfile::Piece& piece = log.pieces[travel.first];
+  const bool all = travel.end == travel.first + 1 && piece.to_mm > piece.from_mm;
+  if (!(all && !was.slopes.empty()) && !BeginsWithUsualSlope(was, log, travel)) return false;
   TravelProfile behind = travel;
   ++behind.first;
   return LowLength(log, behind, lift) <= kLeastMoveMm;

@@ -161,6 +161,25 @@ TEST(VerifyLifts, OnASlopeOfTheOriginalMayBeShort) {
   EXPECT_EQ(Broken(a, other(".265")), "lifts");
 }
 
+// Where travel rises over its first 3 mm, shorter travel does so all along.
+TEST(VerifyLifts, OnASlopeMayBeShorterThanThat) {
+  const auto line = [](const std::string& slope, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\n", slope, "G1 ", from, " Z.6 F9000\nG1 Z.2 F720\n",
+                        "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const auto from = [](const char* y) { return absl::StrCat("G1 X0 Y", y, " Z.6 F9000\n"); };
+  const std::string begin = kHead + Line("Internal infill", "X10 Y0", "X0 Y0") +
+                            line(from("3"), "X0 Y20", "X0 Y30") +
+                            line(from("33"), "X0 Y50", "X0 Y52.6");
+  const std::string a =
+      begin + line(from("55.6"), "X0 Y75", "X0 Y65") + line(from("62"), "X0 Y55", "X0 Y57");
+  const auto other = [&](const std::string& slope) {
+    return begin + line(slope, "X0 Y55", "X0 Y57") + line(from("60"), "X0 Y75", "X0 Y65");
+  };
+  EXPECT_EQ(Broken(a, other("")), "");
+  EXPECT_EQ(Broken(a, other("G1 X0 Y54.8 Z.21 F9000\n")), "lifts");
+}
+
 // Lines of infill with retracted travel moves to them, each lifted but for that to line `low`.
 std::string Lines(int count, int low) {
   std::string text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
