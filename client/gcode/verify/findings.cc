@@ -68,15 +68,6 @@ void Observations::Append(const Observations& other) {
                         other.travel_lengths.end());
   travels_to_layers.insert(travels_to_layers.end(), other.travels_to_layers.begin(),
                            other.travels_to_layers.end());
-  for (const auto& [key, habit] : other.open_habits) {
-    OpenHabit& own = open_habits[key];
-    own.retracted += habit.retracted;
-    own.open += habit.open;
-    own.bent += habit.bent;
-    if (own.line == 0) own.line = habit.line;
-  }
-  new_open_travels.insert(new_open_travels.end(), other.new_open_travels.begin(),
-                          other.new_open_travels.end());
   detours.insert(detours.end(), other.detours.begin(), other.detours.end());
   departs_inside |= other.departs_inside;
   departures_outside += other.departures_outside;
@@ -85,7 +76,6 @@ void Observations::Append(const Observations& other) {
                          other.lost_departures.end());
   pokes.insert(pokes.end(), other.pokes.begin(), other.pokes.end());
   long_travels.insert(long_travels.end(), other.long_travels.begin(), other.long_travels.end());
-  farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   lifts.Append(other.lifts);
   wipes.insert(wipes.end(), other.wipes.begin(), other.wipes.end());
 }

@@ -191,27 +191,10 @@ struct WipeDeviation {
   int64_t layer = -1;
 };
 
-struct Box {
-  Point low{1e9, 1e9};
-  Point high{-1e9, -1e9};
-
-  void Add(Point p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-};
-
 // A travel move with an acceleration that only shorter ones of its layer have.
 struct LongTravel {
   uint64_t acceleration = 0;
   float length_mm = 0;
-  uint32_t line = 0;
-  int64_t layer = -1;
-};
-
-// Where a layer's new moves extend farthest to one side.
-struct FarPoint {
-  Point at;
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -223,30 +206,11 @@ struct ExtremePoint {
   int64_t layer = -1;
 };
 
-// How often travel of one kind and about one length retracts, and does not.
-struct OpenHabit {
-  int64_t retracted = 0;
-  int64_t open = 0;
-  int64_t bent = 0;   // of those that stay open
-  uint32_t line = 0;  // of the first one that retracts
-};
-
 // A bend of travel that leads around an outer wall.
 struct Detour {
   uint32_t line = 0;
   int64_t layer = -1;
   float excess_mm = 0;
-};
-
-// Unretracted travel that the original does not have, and what its layer has of this kind.
-struct NewOpenTravel {
-  uint32_t kind = 0;
-  float length_mm = 0;
-  uint32_t line = 0;
-  int64_t layer = -1;
-  int64_t retracted_in_layer = 0;
-  float longest_in_layer_mm = 0;  // unretracted
-  uint32_t line_in_layer = 0;     // of a retracted one
 };
 
 // What some layers of one file show.
@@ -263,13 +227,9 @@ struct Observations {
   ExtremePoint first_lowest;
   std::vector<LowestTravel> lowest;  // travel that goes lower than what it connects
   std::vector<Descent> descents;     // the longest of each travel
-  absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
-  std::vector<FarPoint> farthest;
-  Box box;                                   // of all points
-  std::vector<TravelLength> travel_lengths;  // the greatest of each layer
+  absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file
+  std::vector<TravelLength> travel_lengths;             // the greatest of each layer
   std::vector<TravelLength> travels_to_layers;
-  absl::flat_hash_map<uint32_t, OpenHabit> open_habits;  // by kind and length
-  std::vector<NewOpenTravel> new_open_travels;
   std::vector<LongTravel> long_travels;
   std::vector<Detour> detours;           // of the original one for each layer
   bool departs_inside = false;           // by a short move from what is no outer wall: departures.h

@@ -27,7 +27,7 @@ constexpr RuleWords kRules[] = {
     {"progress", "lines of progress keep their sequence, and stand where they are true"},
     {"scripts", "moves beside scripts are as they were"},
     {"path_ends", "moves that continue along a path stay with its end"},
-    {"bounds", "no travel leaves the area in which the original moves"},
+    {"bounds", "travel is straight, but for bends around outer walls"},
     {"made_of_parts", "new travel leaves, goes and arrives as travel of the original does"},
     {"kept_travel", "between paths that still follow each other nothing changes"},
     {"obstacles", "no travel leads into what stands, or nearer to it than in the original"},

@@ -32,7 +32,7 @@ enum class VerifyRule : uint8_t {
   kProgress,     // M73 and what else tells how far the print is
   kScripts,      // the moves beside them
   kPathEnds,     // moves that continue along a path
-  kBounds,       // the area of all moves
+  kBounds,       // new travel is straight
   kMadeOfParts,  // new travel leaves, goes and arrives as travel of the original does
   kKeptTravels,  // between two paths that follow each other as in the original
   kObstacles,    // nothing that stands is in the way of the head

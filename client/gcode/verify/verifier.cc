@@ -205,10 +205,9 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   using RuleInContext = void (*)(const LayerPair&, const RuleContext&, LayerFindings&);
   static constexpr RuleInContext kInContext[] = {CheckOrder, CheckDirection, CheckSeam, CheckWipes};
   static constexpr Rule kRules[] = {
-      CheckWholePaths, CheckOpenTravels,     ObserveOpenHabits,    CheckKeptTravels, CheckBends,
-      CheckFixedMoves, CheckScriptedTravels, ObserveLifts,         ObserveHeights,   ObservePrimes,
-      ObserveParts,    ObserveFarMoves,      ObserveTravelLengths, ObserveSpeeds,    CheckCommands,
-      CheckPathEnds,   CheckDepartures};
+      CheckWholePaths,      CheckOpenTravels, CheckKeptTravels, CheckBends,    CheckFixedMoves,
+      CheckScriptedTravels, ObserveLifts,     ObserveHeights,   ObservePrimes, ObserveParts,
+      ObserveTravelLengths, ObserveSpeeds,    CheckCommands,    CheckPathEnds, CheckDepartures};
   for (const RuleInContext check : kInContext) {
     if (!layer.Ended()) check(layer, context_, findings);
   }
@@ -279,7 +278,6 @@ void Verifier::CheckChunk() {
     if (rest_) rest_->Take(std::move(islands[i]), chunk_was_.layers[i].index, findings_);
   }
   if ((rules_ & RuleBit(VerifyRule::kObstacles)) != 0) CheckObstacles(layers);
-  ObserveBounds(chunk_was_, seen_was_.box);
   seen_was_.deposit_accelerations.insert(chunk_was_.accelerations.begin(),
                                          chunk_was_.accelerations.end());
   CheckStandstill(chunk_was_, chunk_is_, findings_);
@@ -304,7 +302,6 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareHeights(seen_was_, seen_is_, breaks);
   CompareBounds(seen_was_, seen_is_, context_, breaks);
   CompareTravelLengths(seen_was_, seen_is_, breaks);
-  CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
   CompareParts(seen_was_, seen_is_, breaks);
   ComparePrimes(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);

@@ -106,8 +106,6 @@ SlicerSettings ReadSettings(std::string_view text) {
   settings.monotonic_bottom = Begins(bottom, "monotonic");
   settings.leads_around_walls =
       first_of("avoid_crossing_perimeters", "reduce_crossing_wall") == "1";
-  settings.retract_before_mm =
-      GreatestOf(first_of("retract_before_travel", "retraction_minimum_travel"));
   // Prints are at most so far apart, and heads no higher.
   constexpr double kMostClearanceMm = 100;
   const auto room = [](double mm, double& stated_mm) {

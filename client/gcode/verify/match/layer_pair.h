@@ -24,7 +24,6 @@ struct SlicerSettings {
   double clearance_radius_mm = 30;  // around the nozzle, within which other parts hang
   double nozzle_height_mm = 2;      // no other part hangs lower above the tip than this
   double least_layer_seconds = 10;  // the greatest of all tools; 10: not stated
-  double retract_before_mm = 0;  // longer travel retracts; the greatest of all tools; 0: not stated
 };
 
 SlicerSettings ReadSettings(std::string_view text);

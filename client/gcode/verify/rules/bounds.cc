@@ -1,10 +1,9 @@
-// No travel leaves the box of all moves of the original. New travel is straight, except for bends
-// that lead around an outer wall: without such a bend it would cross one, and with it does not. So
-// no travel overshoots its end, and none is led along a wall. None goes along an arc of its own.
-// Hidden travel may bend where that hides it (hidden_links.h).
+// New travel is straight, except for bends that lead around an outer wall: without such a bend it
+// would cross one, and with it does not. So no travel overshoots its end or leads out of the
+// print, and none is led along a wall. None goes along an arc of its own. Hidden travel may bend
+// where that hides it (hidden_links.h).
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -176,33 +175,6 @@ double LongestAlong(const LayerPair& layer) {
 
 }  // namespace
 
-void ObserveBounds(const TraceChunk& was, Box& box) {
-  for (const TracePath& path : was.paths) box.Add(path.start);
-  for (const TraceSegment& segment : was.segments) box.Add(segment.end);
-  for (const TraceMove& move : was.moves) box.Add(move.to);
-}
-
-void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings) {
-  const TraceChunk& is = layer.is();
-  std::array<FarPoint, 4> farthest;
-  const auto side = [](Point p, size_t k) {
-    const double along = k < 2 ? p.x : p.y;
-    return k % 2 == 0 ? along : -along;
-  };
-  for (uint32_t m = is.links[layer.first_path_is()].first_move;
-       m < is.links[layer.end_path_is()].first_move; ++m) {
-    const TraceMove& move = is.moves[m];
-    if (!move.sideways() || layer.IsKnown(move)) continue;
-    for (size_t k = 0; k < farthest.size(); ++k) {
-      if (farthest[k].line != 0 && side(move.to, k) <= side(farthest[k].at, k)) continue;
-      farthest[k] = {move.to, move.line, layer.index()};
-    }
-  }
-  for (const FarPoint& point : farthest) {
-    if (point.line != 0) findings.is.farthest.push_back(point);
-  }
-}
-
 void CompareBounds(const Observations& was, const Observations& is, const RuleContext& context,
                    std::vector<Finding>& breaks) {
   for (const Detour& detour : is.detours) {
@@ -211,15 +183,6 @@ void CompareBounds(const Observations& was, const Observations& is, const RuleCo
                       absl::StrFormat("travel is %.2f mm longer because of a bend around an outer "
                                       "wall; the original leads no travel around walls",
                                       detour.excess_mm)});
-  }
-  for (const FarPoint& far : is.farthest) {
-    const Point p = far.at;
-    const double off = std::max(
-        {was.box.low.x - p.x, p.x - was.box.high.x, was.box.low.y - p.y, p.y - was.box.high.y});
-    if (off <= kLooseMm) continue;
-    breaks.push_back(
-        {VerifyRule::kBounds, 0, far.line, far.layer,
-         absl::StrFormat("leads %.2f mm out of the area in which the original moves", off)});
   }
 }
 

@@ -24,7 +24,6 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings);
-void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings);
 void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings);
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings);
@@ -32,7 +31,6 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveParts(const LayerPair& layer, LayerFindings& findings);
 void ObservePrimes(const LayerPair& layer, LayerFindings& findings);
-void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
 void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
@@ -48,9 +46,6 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
 // Chunk by chunk: what belongs to sections.
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 void CheckLineFaults(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
-
-// The same: where the original moves.
-void ObserveBounds(const TraceChunk& was, Box& box);
 
 // What one file states about its progress, and when.
 struct ProgressLog {
@@ -70,8 +65,6 @@ void CompareBounds(const Observations& was, const Observations& is, const RuleCo
                    std::vector<Finding>& breaks);
 void CompareTravelLengths(const Observations& was, const Observations& is,
                           std::vector<Finding>& breaks);
-void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
-                       std::vector<Finding>& breaks);
 void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void ComparePrimes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void ComparePokes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

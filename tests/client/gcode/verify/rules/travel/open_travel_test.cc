@@ -176,44 +176,6 @@ TEST(VerifyOpenTravels, LeadToALayerWhereSuchDo) {
   EXPECT_EQ(Broken(a + open, a + kOther), "");
 }
 
-// Line `i` of infill: each begins 3 mm from where the one before ends, the one of 6 4 mm.
-std::string InfillLine(int i, bool open = false) {
-  const int y = 3 * i + (i >= 6 ? 1 : 0);
-  const std::string from = absl::StrCat("X", 9 * (i % 2), " Y", y);
-  const std::string line =
-      Line("Internal infill", from, absl::StrCat("X", 9 - 9 * (i % 2), " Y", y));
-  return open ? With(line, Travel(from), absl::StrCat("G1 ", from, " F9000\n")) : line;
-}
-
-// Pieces of a wall with open travel of 3 mm between them, and lines of infill.
-std::string WallAndInfill(int lines) {
-  std::string text = kHead + ";TYPE:Perimeter\n";
-  for (int i = 0; i < 8; ++i) {
-    absl::StrAppend(&text, "G1 X", 80 + 6 * i, " Y0 F9000\nG1 X", 83 + 6 * i, " Y0 E.1 F1200\n");
-  }
-  for (int i = 0; i < lines; ++i) text += InfillLine(i);
-  return text;
-}
-
-// Travel of this length stays open in the file, but not to infill.
-TEST(VerifyOpenTravels, ThatAreNewRetractWhereTheirKindDoes) {
-  const std::string lines = WallAndInfill(6);
-  const std::string a = lines + InfillLine(7) + InfillLine(6);
-  EXPECT_EQ(Broken(a, a), "");
-  EXPECT_EQ(Broken(a, lines + InfillLine(6) + InfillLine(7)), "");
-  EXPECT_EQ(Broken(a, lines + InfillLine(6, true) + InfillLine(7)), "open_travel");
-  // Three that retract are no habit, nor is it one where some do not.
-  const std::string few = WallAndInfill(1);
-  EXPECT_EQ(Broken(few + InfillLine(2) + InfillLine(1), few + InfillLine(1, true) + InfillLine(2)),
-            "");
-  EXPECT_EQ(Broken(lines + InfillLine(8, true) + InfillLine(7) + InfillLine(6),
-                   lines + InfillLine(6, true) + InfillLine(8) + InfillLine(7)),
-            "");
-  // As short as the slicer says that it does not retract.
-  const std::string settings = "; retract_before_travel = 2,4\n";
-  EXPECT_EQ(Broken(a + settings, lines + InfillLine(6, true) + InfillLine(7) + settings), "");
-}
-
 // Each with each of the original it would be ten billion pairs, and minutes.
 TEST(VerifyOpenTravels, ManyThatAreNewTakeNoLongerEach) {
   const auto check = [](int lines) {
