@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstddef>
 
+#include "client/gcode/text/lexer.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -31,18 +32,17 @@ bool IsOfStartOrEnd(std::string_view setting) {
 std::optional<std::string_view> SettingThatAdds(std::string_view text, std::string_view command) {
   constexpr std::string_view kEnd = "_gcode = ";
   bool stated = false;
-  for (size_t at = text.find(kEnd); at != text.npos; at = text.find(kEnd, at + 1)) {
-    const size_t begin = text.substr(0, at).rfind('\n') + 1;  // 0 if there is none
-    if (text[begin] != ';') continue;
-    const size_t name_end = at + kEnd.find(' ');
-    const std::string_view name = TrimBlanks(text.substr(begin + 1, name_end - begin - 1));
+  for (Offset next = 0; next < text.size();) {
+    const Line line = LineAt(text, next);
+    next = line.next;
+    const std::string_view comment = line.Text(text);
+    if (!StartsWith(comment, ";")) continue;
+    const size_t at = comment.find(kEnd);
+    if (at == comment.npos) continue;
+    const std::string_view name = TrimBlanks(comment.substr(1, at + kEnd.find(' ') - 1));
     if (!std::all_of(name.begin(), name.end(), IsOfWord)) continue;
     stated = true;
-    const size_t value = at + kEnd.size();
-    const size_t value_end = std::min(text.find('\n', value), text.size());
-    if (!IsOfStartOrEnd(name) && HasCommand(text.substr(value, value_end - value), command)) {
-      return name;
-    }
+    if (!IsOfStartOrEnd(name) && HasCommand(comment.substr(at + kEnd.size()), command)) return name;
   }
   return stated ? std::optional<std::string_view>("") : std::nullopt;
 }

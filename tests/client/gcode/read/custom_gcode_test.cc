@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "tests/support/growth.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -19,6 +23,15 @@ TEST(SettingThatAdds, IsUnknownWhereNoneIsStated) {
   EXPECT_EQ(SettingThatAdds("G1 X5\n", "M400"), std::nullopt);
   EXPECT_EQ(SettingThatAdds("M117 my_gcode = M400\n; gcode_comments = 0\n", "M400"), std::nullopt);
   EXPECT_EQ(SettingThatAdds("; layer_gcode = M400", "M400"), "layer_gcode");
+}
+
+TEST(SettingThatAdds, TakesNoLongerEachInALongLine) {
+  const auto look = [](int times) {
+    std::string text = ";";
+    for (int i = 0; i < times; ++i) text += "_gcode = ";
+    EXPECT_EQ(SettingThatAdds(text, "M400"), "");
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(20'000, look), traverse::testing::kSlowGrowth);
 }
 
 }  // namespace
