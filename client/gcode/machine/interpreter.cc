@@ -11,6 +11,9 @@
 namespace traverse::gcode {
 namespace {
 
+// So many lines are looked at for how a lift or a wait goes on.
+constexpr int kMostAhead = 8;
+
 // kUnknown if it is none.
 StepKind KindOfMark(std::string_view line) {
   const Mark* mark = MarkOf(line);
@@ -303,21 +306,25 @@ void Interpreter::Move(Step& step) {
   if (step.relative && next_ > lifts_until_) step.kind = StepKind::kUnknown;
 }
 
+bool Interpreter::LexAhead(Offset& next, Command& command) const {
+  if (next >= text_.size()) return false;
+  const Line line = LineAt(text_, next);
+  LexLine(line.Text(text_), command);
+  next = line.next;
+  return true;
+}
+
 Offset Interpreter::LiftsUntil(Offset next) const {
   constexpr uint32_t kOfLifts = Command::Bit('Z') | Command::Bit('F');
-  constexpr int kMostLines = 8;
   Command command;
   bool lifts = false;
-  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
-    const Line line = LineAt(text_, next);
-    LexLine(line.Text(text_), command);
-    next = line.next;
+  for (int i = 0; i < kMostAhead && LexAhead(next, command); ++i) {
     if (command.Is('G', 90)) {
       if (!lifts) return 0;
       // Some firmware lets G91 and G90 count for the extruder too: its mode is stated again.
-      const Line behind = next < text_.size() ? LineAt(text_, next) : line;
-      LexLine(behind.Text(text_), command);
-      return command.Is('M', state_.relative_e ? 83 : 82) ? behind.next : next;
+      Offset behind = next;
+      const bool stated = LexAhead(behind, command);
+      return stated && command.Is('M', state_.relative_e ? 83 : 82) ? behind : next;
     }
     const bool lift = (command.Is('G', 0) || command.Is('G', 1)) && command.Has('Z') &&
                       (command.words & ~kOfLifts) == 0;
@@ -332,13 +339,9 @@ StepKind Interpreter::KindOfWait() const {
 }
 
 bool Interpreter::PullsNext() const {
-  constexpr int kMostLines = 8;
   Command command;
   Offset next = next_;
-  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
-    const Line line = LineAt(text_, next);
-    LexLine(line.Text(text_), command);
-    next = line.next;
+  for (int i = 0; i < kMostAhead && LexAhead(next, command); ++i) {
     if (command.kind == LineKind::kText) return false;
     if (command.kind != LineKind::kCommand || command.Is('G', 4) || command.Is('M', 400)) continue;
     const bool bare = TrimBlanks(command.rest).empty();
@@ -356,10 +359,7 @@ bool Interpreter::PullsNext() const {
 Offset Interpreter::ConditionUntil(Offset next) const {
   constexpr int kMostLines = 16;
   Command command;
-  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
-    const Line line = LineAt(text_, next);
-    LexLine(line.Text(text_), command);
-    next = line.next;
+  for (int i = 0; i < kMostLines && LexAhead(next, command); ++i) {
     if (command.Is('M', 623)) return next;
     const bool tells =
         command.kind == LineKind::kCommand && command.letter == 'M' && OnlyTells(command.number);

@@ -124,6 +124,8 @@ class Interpreter {
   // `still`: the head does not move in XY.
   void FollowFilament(Decimal filament, bool still);
   static StepKind SwitchMode(bool& mode, bool value);
+  // Lexes the line at `next`, which moves behind it; false at the end of the text.
+  bool LexAhead(Offset& next, Command& command) const;
   // The end of the lines that lift relatively, G91, moves of Z, G90, if such begin at the line
   // before `next`; otherwise 0.
   Offset LiftsUntil(Offset next) const;
