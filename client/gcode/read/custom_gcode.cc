@@ -30,6 +30,7 @@ bool IsOfStartOrEnd(std::string_view setting) {
 }  // namespace
 
 std::optional<std::string_view> SettingThatAdds(std::string_view text, std::string_view command) {
+  if (command.empty()) return std::nullopt;
   constexpr std::string_view kEnd = "_gcode = ";
   bool stated = false;
   for (Offset next = 0; next < text.size();) {

@@ -11,7 +11,8 @@
 namespace traverse::gcode {
 
 // The first setting that adds lines between paths, not at the start or end of the print, and has
-// `command`, such as "M400"; empty if none has it; nothing if `text` states no custom G-code.
+// `command`, such as "M400"; empty if none has it; nothing if `text` states no custom G-code, or
+// the command is none, as of a comment.
 std::optional<std::string_view> SettingThatAdds(std::string_view text, std::string_view command);
 
 }  // namespace traverse::gcode

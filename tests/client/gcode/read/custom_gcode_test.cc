@@ -23,6 +23,7 @@ TEST(SettingThatAdds, IsUnknownWhereNoneIsStated) {
   EXPECT_EQ(SettingThatAdds("G1 X5\n", "M400"), std::nullopt);
   EXPECT_EQ(SettingThatAdds("M117 my_gcode = M400\n; gcode_comments = 0\n", "M400"), std::nullopt);
   EXPECT_EQ(SettingThatAdds("; layer_gcode = M400", "M400"), "layer_gcode");
+  EXPECT_EQ(SettingThatAdds("; layer_gcode = ;M400", ""), std::nullopt);
 }
 
 TEST(SettingThatAdds, TakesNoLongerEachInALongLine) {
