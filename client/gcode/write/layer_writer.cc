@@ -64,6 +64,14 @@ std::vector<uint32_t> LayerWriter::PlacesOf(const LayerOrder& order) const {
   return places;
 }
 
+bool LayerWriter::MovesObjects(const LayerOrder& order, const std::vector<uint32_t>& places) const {
+  for (size_t i = 0; i < order.size(); ++i) {
+    const Block& given = file_.blocks[layer_.first_block + places[i]];
+    if (file_.blocks[order[i].block].object != given.object) return true;
+  }
+  return false;
+}
+
 PartStart LayerWriter::WriteTravel(const Placement& before, const Placement& first,
                                    const PartStart& start, std::string& text) const {
   GcodeOut out(file_, start, text);
@@ -83,9 +91,8 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
   std::string bare;
   std::vector<size_t> marks;
   const PartStart behind = WriteBarePaths(order, start, bare, &marks, as_sliced);
-  const std::vector<uint32_t> places = PlacesOf(order);
-  const bool moved = !std::is_sorted(places.begin(), places.end());
-  ProgressLines(file_, layer_, moved).Insert(bare, start, marks, text);
+  ProgressLines(file_, layer_, MovesObjects(order, PlacesOf(order)))
+      .Insert(bare, start, marks, text);
   for (size_t i = 1; ends != nullptr && i < marks.size(); i += 2) ends->push_back(marks[i]);
   return behind;
 }
@@ -117,7 +124,7 @@ PartStart LayerWriter::WriteBarePaths(const LayerOrder& order, const PartStart& 
   GcodeOut out(file_, start, text);
   PlacedPath from(file_, order.front());
   const std::vector<uint32_t> places = PlacesOf(order);
-  const bool moved = !std::is_sorted(places.begin(), places.end());
+  const bool moved = MovesObjects(order, places);
   LinkParts parts(file_);
   for (size_t i = 0; i < order.size(); ++i) {
     if (i > 0) {

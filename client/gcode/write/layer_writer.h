@@ -87,6 +87,9 @@ class LayerWriter {
  private:
   bool IsGiven(const LayerOrder& order) const;
 
+  // Whether objects stand at other places than in the file.
+  bool MovesObjects(const LayerOrder& order, const std::vector<uint32_t>& places) const;
+
   // The text of the layer is that of the file.
   bool StaysAsText(const LayerOrder& order, const PartStart& start, bool as_sliced) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, bool as_sliced,

@@ -98,6 +98,25 @@ TEST(ProgressLines, KeepTheirSequence) {
   }
 }
 
+// Two objects that follow each other as in the file keep what stands between them, but for these.
+TEST(ProgressLines, KeepTheirSequenceWhereWholeObjectsMove) {
+  std::string text = kStart;
+  for (int i = 0; i < 4; ++i) {
+    absl::StrAppend(&text, "; printing object ", i, " id:", i, " copy 0\n", Line(10 * i),
+                    "; stop printing object ", i, " id:", i, " copy 0\nM73 P", i, "\n");
+  }
+
+  const std::string written = Written(text + "M107\n", {2, 0, 1, 3});
+
+  size_t at = 0;
+  for (int i = 0; i < 3; ++i) {
+    const size_t next = written.find(absl::StrCat("M73 P", i));
+    ASSERT_NE(next, std::string::npos) << written;
+    EXPECT_GE(next, at) << written;
+    at = next;
+  }
+}
+
 TEST(ProgressLines, DoNotPassWhatNothingCrosses) {
   const std::string text = kStart + Line(0) + "M73 P10\n" + Line(20) + Line(10) + "M600\n" +
                            Line(30) + "M73 P60\n" + Line(50) + Line(40) + "M107\n";
