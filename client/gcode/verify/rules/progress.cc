@@ -18,15 +18,15 @@ double PercentAt(double print_seconds, double seconds) {
   return print_seconds > 0 ? std::min(100 * seconds / print_seconds, 100.0) : 0;
 }
 
-// When the section of `line` begins and ends: no line can leave it.
+// When a section begins and ends.
 struct Span {
   double begin = 0;
   double end = 0;
 };
 
-Span SectionOf(const ProgressLog& log, const Progress& line) {
+Span SectionOf(const ProgressLog& log, uint32_t of) {
   const auto behind = std::upper_bound(
-      log.begins.begin(), log.begins.end(), line.section,
+      log.begins.begin(), log.begins.end(), of,
       [](uint32_t section, const SectionBegin& begin) { return section < begin.section; });
   Span span{0, log.seconds};
   if (behind != log.begins.begin()) span.begin = std::prev(behind)->seconds;
@@ -49,20 +49,23 @@ struct Displacement {
   double given = 0;
 };
 
-// Where one section saves more time than another, a line may be off as far as they differ. Lines
-// that state no share stay where they were. The prints take `was_seconds` and `is_seconds`.
+// A line is no farther off than it was, or stands between there and where it would be if it kept
+// its place in its section, which is elsewhere where one section saves more time than another.
+// Lines that state no share stay where they were. The prints take `was_seconds` and `is_seconds`.
 Displacement DisplacementOf(const ProgressLog& was, double was_seconds, const ProgressLog& is,
                             double is_seconds, size_t i) {
   Displacement found;
   found.given = PercentAt(was_seconds, was.lines[i].seconds);
   found.percent = PercentAt(is_seconds, is.lines[i].seconds);
   found.stated = was.lines[i].percent >= 0 ? was.lines[i].percent : found.given;
-  const double alike = PercentAt(
-      is_seconds,
-      Transferred(was.lines[i].seconds, SectionOf(was, was.lines[i]), SectionOf(is, is.lines[i])));
-  const double allowed = std::abs(found.given - found.stated) + kSlackPercent;
-  found.excess = std::min(std::abs(found.percent - found.stated) - allowed,
-                          std::abs(found.percent - alike) - kSlackPercent);
+  const uint32_t section = was.lines[i].section;
+  const double alike =
+      PercentAt(is_seconds,
+                Transferred(was.lines[i].seconds, SectionOf(was, section), SectionOf(is, section)));
+  const double off = std::abs(found.given - found.stated);
+  const double least = std::min(found.stated - off, alike) - kSlackPercent;
+  const double most = std::max(found.stated + off, alike) + kSlackPercent;
+  found.excess = std::max(least - found.percent, found.percent - most);
   return found;
 }
 

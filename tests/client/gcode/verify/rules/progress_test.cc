@@ -109,6 +109,27 @@ TEST(VerifyProgress, MayCountTheEndScript) {
   EXPECT_EQ(Broken(a, print(1, 7), {}, RuleBit(VerifyRule::kProgress)), "progress");
 }
 
+// The layer before saves more than the others: a line at the begin of its section, which all
+// paths keep, is late there. Elsewhere in between it is no farther off.
+TEST(VerifyProgress, MayStandBetweenItsPlaceAndWhereItIsTrue) {
+  const auto print = [](int seconds, int before) {
+    std::string text = kHead;
+    for (int i = 0; i < 20; ++i) {
+      absl::StrAppend(&text, i == 10 ? ";LAYER_CHANGE\nG1 Z.4 F9000\n" : "", "G1 X0 Y", 2 * i, " F",
+                      i == 15 ? 600.0 / seconds : 600000.0, "\n", i == before ? "M73 P25\n" : "",
+                      ";TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n");
+    }
+    return text;
+  };
+  const std::string a = print(20, 10);
+
+  EXPECT_EQ(Broken(a, print(1, 10), {}, kRules), "");
+  EXPECT_EQ(Broken(a, print(1, 7), {}, kRules), "");
+  EXPECT_EQ(Broken(a, print(1, 5), {}, kRules), "");
+  EXPECT_EQ(Broken(a, print(1, 4), {}, kRules), "progress");
+  EXPECT_EQ(Broken(a, print(1, 12), {}, kRules), "progress");
+}
+
 TEST(VerifyProgress, MayStandBetweenTheSegmentsOfAPath) {
   const std::string line = "G1 X0 Y0 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
   const std::string path = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
