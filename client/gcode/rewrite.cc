@@ -209,12 +209,9 @@ class Rewriter {
       if (file_.states_digest && !file_.numbers) RenewDigest(rewrite.text);
       const LayerLines lines(file_, chosen, head);
       chosen.texts = {};  // they are in there
-      const VerifyReport report =
-          CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
-                     AllRules(file_, options_));
+      const std::vector<VerifyBreak> breaks = MakeProgressTrue(rewrite.text);
       if (absl::Status status = file_.limit.status(); !status.ok()) return status;
-      if (report.ok()) {
-        MakeProgressTrue(rewrite.text);
+      if (breaks.empty()) {
         rewrite.orders = std::move(chosen.orders);
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));
         if (!done.ok() || !CrossesMore(*done)) return done;
@@ -223,22 +220,37 @@ class Rewriter {
         chooser_.Tighten(round + 1 < kRoundsOfLayers ? more : done->before.crossings + 1);
         continue;
       }
-      if (unproven_.empty()) unproven_ = Reason(file_, report.breaks.front());
-      RuleOut(report, lines, round);
+      if (unproven_.empty()) unproven_ = Reason(file_, breaks.front());
+      RuleOut(breaks, lines, round);
     }
   }
 
   double SecondsSavedByFast() const { return chooser_.SecondsSavedByFast(); }
 
  private:
-  // Unless that cannot be proven.
-  void MakeProgressTrue(std::string& text) const {
+  // Moves lines of progress in `text` to where they are true, unless that cannot be proven. Returns
+  // what breaks a rule: such lines only where nothing else does, for they may still be moved.
+  std::vector<VerifyBreak> MakeProgressTrue(std::string& text) const {
+    std::vector<VerifyBreak> breaks = Breaks(text);
+    const auto others = std::stable_partition(
+        breaks.begin(), breaks.end(),
+        [](const VerifyBreak& found) { return found.rule != VerifyRule::kProgress; });
+    if (others != breaks.begin()) {
+      breaks.erase(others, breaks.end());
+      return breaks;
+    }
     std::optional<std::string> moved = WithTrueProgress(file_, text);
-    if (!moved) return;
+    if (!moved) return breaks;
     if (file_.states_digest && !file_.numbers) RenewDigest(*moved);
-    const VerifyReport report = CheckGcode(file_.text, file_.name, *moved,
-                                           file_.name + " as optimised", AllRules(file_, options_));
-    if (report.ok()) text = *std::move(moved);
+    if (!Breaks(*moved).empty()) return breaks;
+    text = *std::move(moved);
+    return {};
+  }
+
+  std::vector<VerifyBreak> Breaks(const std::string& text) const {
+    return CheckGcode(file_.text, file_.name, text, file_.name + " as optimised",
+                      AllRules(file_, options_))
+        .breaks;
   }
 
   void NoteChoice(const ChosenLayers& chosen, GcodeRewrite& rewrite) const {
@@ -301,9 +313,9 @@ class Rewriter {
   }
 
   // At the latest in round kMostRounds nothing is left but the file as it is.
-  void RuleOut(const VerifyReport& report, const LayerLines& lines, int round) {
+  void RuleOut(const std::vector<VerifyBreak>& breaks, const LayerLines& lines, int round) {
     bool any = false;
-    for (const VerifyBreak& found : report.breaks) {
+    for (const VerifyBreak& found : breaks) {
       const size_t layer = lines.Find(found.optimised_line).layer;
       const bool other_print = found.rule == VerifyRule::kSamePrint;
       if (round >= kRoundsOfLayers) {
