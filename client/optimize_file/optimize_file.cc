@@ -100,12 +100,12 @@ std::vector<double> WorkOf(const InputJob& job) {
 
 // What making orders better and writing them takes for the paths of `job`, though the search may
 // have been done at once.
-double SecondsBehind(const InputJob& job) {
+double SecondsBehind(const InputJob& job, double load) {
   constexpr double kProcessorSecondsPerPath = 0.55e-3;
   double paths = 0;
   for (const v1::Layer& layer : job.layers) paths += layer.plan().paths_size();
   const int threads = job.gcode ? gcode::ThreadsFor(job.gcode->text.size()) : 1;
-  return kProcessorSecondsPerPath * paths / threads;
+  return load * kProcessorSecondsPerPath * paths / threads;
 }
 
 using Answers = std::vector<std::optional<v1::LayerResult>>;  // [layer]
@@ -153,7 +153,7 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
     SearchWork work{WorkOf(job)};
     if (options.improves_orders) {
       work.stages_behind = kBetterOrders;
-      work.seconds_behind = SecondsBehind(job);
+      work.seconds_behind = SecondsBehind(job, options.load);
     }
     options.progress.on_search(work);
   }
@@ -188,7 +188,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   SearchOptions search = options;
   const absl::Time due = absl::Now() + options.deadline;
   search.finish_by =
-      options.finish_by - WritingTime(job.gcode->text.size(), ProcessorLoad(), options.reading,
+      options.finish_by - WritingTime(job.gcode->text.size(), options.load, options.reading,
                                       options.finish_by - absl::Now());
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
@@ -228,8 +228,10 @@ absl::Duration WritingTime(size_t bytes, double load, absl::Duration reading, ab
   constexpr double kReadings = 4;  // files of many small layers take up to ten
   const absl::Duration idle = kLeast + absl::Seconds(kSecondsPerByte * static_cast<double>(bytes));
   // Reading alone does not tell: a thread that has just woken gets a processor sooner than one that
-  // has searched for long.
-  return std::max(idle, std::min(std::max(load * idle, kReadings * reading), left / 2));
+  // has searched for long. Nor does the load of the last minute while more and more come: those who
+  // came in front of us come once more.
+  const absl::Duration busy = (2 * load - 1) * idle;
+  return std::max(idle, std::min(std::max(busy, kReadings * reading), left / 2));
 }
 
 }  // namespace traverse

@@ -63,6 +63,9 @@ struct SearchProgress {
   std::function<void(const v1::LayerResult& layer)> on_layer = {};
 };
 
+// How many want each processor of this machine, on the average of the last minute; at least 1.
+double ProcessorLoad();
+
 struct SearchOptions {
   std::optional<v1::Strategy> strategy = std::nullopt;  // unset: the job's own
 
@@ -83,6 +86,9 @@ struct SearchOptions {
 
   // How long reading the file took, on this machine and as busy as it is.
   absl::Duration reading = absl::ZeroDuration();
+
+  // Of this machine: what is done here takes so many times as long as if nothing else ran.
+  double load = ProcessorLoad();
 
   // When stop is requested, the call ends soon with Cancelled.
   std::stop_token cancel = {};
@@ -120,12 +126,10 @@ struct OptimizedFile {
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
                                        const OptimizeFileOptions& options);
 
-// How many want each processor of this machine, on the average of the last minute; at least 1.
-double ProcessorLoad();
-
 // How long writing and verifying a text of `bytes` bytes may take, where `left` is left for the
-// search and for that: as long as on an idle machine for each of `load` who want a processor, some
-// times as long as reading it took, at most half of `left`, and no less than on an idle machine.
+// search and for that: as long as on an idle machine, twice as much more for each of `load` who want
+// a processor beside us, some times as long as reading it took, at most half of `left`, and no less
+// than on an idle machine.
 // Searches end this much before `finish_by`.
 absl::Duration WritingTime(size_t bytes, double load, absl::Duration reading, absl::Duration left);
 

@@ -111,6 +111,21 @@ TEST_F(OptimizeFileTest, TellsOfTheSearchAndItsLayers) {
   EXPECT_THAT(told, ::testing::ElementsAre(300, 1, 1, 1));
 }
 
+TEST_F(OptimizeFileTest, WhatFollowsTheSearchTakesLongerOnABusyMachine) {
+  const InputJob job = Job(3);
+  const auto behind = [&](double load) {
+    double seconds = 0;
+    OptimizeFileOptions options;
+    options.load = load;
+    options.progress.on_search = [&](const SearchWork& work) { seconds = work.seconds_behind; };
+    OptimizeFile(client_, job, options);
+    return seconds;
+  };
+
+  EXPECT_GT(behind(1), 0);
+  EXPECT_DOUBLE_EQ(behind(8), 8 * behind(1));
+}
+
 TEST_F(OptimizeFileTest, FewerCrossingsAreWorthMoreThanKeepingThem) {
   const std::string text = Beginning("sl_nameplate_2tool", "G1 Z1.000 ");
   const gcode::PrintTotals keep = After(text, gcode::Policy::kSafe, gcode::Crossings::kKeep);
@@ -161,7 +176,7 @@ TEST(WritingTime, IsLongerOnABusyMachine) {
   const auto writing = [](double load, absl::Duration left) {
     return WritingTime(1'000'000, load, absl::Milliseconds(50), left);
   };
-  EXPECT_EQ(writing(8, absl::Minutes(1)), absl::Milliseconds(8 * 350));
+  EXPECT_EQ(writing(8, absl::Minutes(1)), absl::Milliseconds(15 * 350));
   EXPECT_EQ(writing(8, absl::Seconds(2)), absl::Seconds(1));
   EXPECT_EQ(writing(8, absl::Milliseconds(400)), absl::Milliseconds(350));
   EXPECT_GE(ProcessorLoad(), 1);
