@@ -123,8 +123,99 @@ bool Knows(const Map& map, int64_t key, int64_t slack) {
   return false;
 }
 
-// Appends the profile of the travel in `link`, and the heights that it states. Returns its kind;
-// unset if it goes nowhere.
+// The travel of one link, up to where the nozzle is opened and from there on, as where the head
+// comes down on its way to the next object.
+class LinkProfiles {
+ public:
+  LinkProfiles(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
+               Observations& seen)
+      : layer_(layer),
+        chunk_(chunk),
+        link_(link),
+        traced_(chunk.links[link]),
+        to_mm_(chunk.paths[link].z_mm),
+        only_new_(only_new),
+        seen_(seen) {}
+
+  void Append() {
+    if (traced_.first_move == traced_.end_move) return;
+    const double z_before = chunk_.moves[traced_.first_move].z_from_mm;
+    level_ = std::abs(z_before - to_mm_) <= kOneHeightMm;
+    for (uint32_t m = traced_.first_move; m < traced_.end_move; ++m) {
+      const TraceMove& move = chunk_.moves[m];
+      retracted_ |= move.kind == MoveKind::kTravel && move.in_print && !move.open;
+    }
+    Begin(z_before);
+    for (uint32_t m = traced_.first_move; m < traced_.end_move; ++m) {
+      const TraceMove& move = chunk_.moves[m];
+      if (move.kind == MoveKind::kPriming) {
+        End();
+        Begin(move.z_to_mm);
+      } else if (move.kind == MoveKind::kTravel && move.in_print && move.open != retracted_) {
+        Take(move);
+      }
+    }
+    End();
+  }
+
+ private:
+  void Begin(double z_mm) {
+    base_mm_ = std::max(to_mm_, z_mm);
+    travel_ = {};
+    travel_.layer = layer_.index();
+    if (link_ > 0) travel_.ends = EndsOf(chunk_, link_);
+    travel_.first = static_cast<uint32_t>(seen_.lifts.pieces.size());
+    length_mm_ = 0;
+    known_ = true;
+  }
+
+  void Take(const TraceMove& move) {
+    const bool known = only_new_ && layer_.IsKnown(move);
+    travel_.line = travel_.line == 0 ? move.line : travel_.line;
+    length_mm_ += move.length_mm();
+    known_ &= known;
+    seen_.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm_),
+                                  static_cast<float>(move.z_to_mm - base_mm_),
+                                  static_cast<float>(move.length_mm())});
+    if (!move.states_z || known) return;
+    const int64_t um = std::llround((move.z_to_mm - to_mm_) * 1000);
+    const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
+    if (only_new_) {
+      seen_.stated.push_back({um, slope, level_, move.line, layer_.index()});
+    } else {
+      seen_.heights.Of(level_).try_emplace(um, Seen{move.line, layer_.index()});
+      if (slope > 0) seen_.slopes.insert(slope);
+    }
+  }
+
+  void End() {
+    if (length_mm_ < kLeastMoveMm || known_) {
+      seen_.lifts.pieces.resize(travel_.first);
+      return;
+    }
+    travel_.end = static_cast<uint32_t>(seen_.lifts.pieces.size());
+    const bool between = traced_.new_layer || !level_;
+    const bool crossing = layer_.CrossingLength(chunk_, link_, !retracted_) > 0;
+    seen_.lifts.travels[(retracted_ ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)]
+        .push_back(travel_);
+  }
+
+  const LayerPair& layer_;
+  const TraceChunk& chunk_;
+  const uint32_t link_;
+  const TraceLink& traced_;
+  const double to_mm_;  // the height of the path
+  const bool only_new_;
+  Observations& seen_;
+  bool level_ = false;
+  bool retracted_ = false;
+  TravelProfile travel_;
+  double base_mm_ = 0;
+  double length_mm_ = 0;
+  bool known_ = false;  // the original has all of it
+};
+
+// Appends the profiles of the travel in `link`, and the heights that it states.
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
@@ -135,52 +226,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   if (first || (traced.first_move < traced.end_move && !chunk.moves[traced.first_move].in_print)) {
     return;
   }
-  const TracePath& to = chunk.paths[link];
-  bool retracted = false;
-  bool known = true;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kTravel || !move.in_print) continue;
-    retracted |= !move.open;
-    known &= layer.IsKnown(move);
-  }
-  if ((only_new && known) || traced.scripted) return;
-  TravelProfile travel;
-  travel.layer = layer.index();
-  if (link > 0) travel.ends = EndsOf(chunk, link);
-  travel.first = static_cast<uint32_t>(seen.lifts.pieces.size());
-  double length = 0;
-  const bool goes = traced.first_move < traced.end_move;
-  const double z_before = goes ? chunk.moves[traced.first_move].z_from_mm : to.z_mm;
-  const double base = std::max(to.z_mm, z_before);
-  const bool level = std::abs(z_before - to.z_mm) <= kOneHeightMm;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kTravel || !move.in_print || move.open == retracted) continue;
-    travel.line = travel.line == 0 ? move.line : travel.line;
-    length += move.length_mm();
-    seen.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base),
-                                 static_cast<float>(move.z_to_mm - base),
-                                 static_cast<float>(move.length_mm())});
-    if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
-    const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
-    const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
-    if (only_new) {
-      seen.stated.push_back({um, slope, level, move.line, layer.index()});
-    } else {
-      seen.heights.Of(level).try_emplace(um, Seen{move.line, layer.index()});
-      if (slope > 0) seen.slopes.insert(slope);
-    }
-  }
-  if (length < kLeastMoveMm) {
-    seen.lifts.pieces.resize(travel.first);
-    return;
-  }
-  travel.end = static_cast<uint32_t>(seen.lifts.pieces.size());
-  const bool between = traced.new_layer || !level;
-  const bool crossing = layer.CrossingLength(chunk, link, !retracted) > 0;
-  seen.lifts.travels[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
-      travel);
+  if (!traced.scripted) LinkProfiles(layer, chunk, link, only_new, seen).Append();
 }
 
 std::string KindText(size_t kind) {

@@ -113,6 +113,19 @@ TEST(VerifyLifts, TheHeadGoesDownBehindTheTravelToAnObject) {
             "same_print");
 }
 
+// Object by object: the head comes down beside what is finished, and rises anew from there.
+TEST(VerifyLifts, BehindAPrimeOnTheWayTheHeadRisesFromThere) {
+  const std::string next =
+      ";LAYER_CHANGE\nG1 E-1 F2100\nG1 Z1.4 F9000\nG1 X0 Y60 F9000\nG1 Z.2\n"
+      "G1 E1 F2100\n";
+  const std::string one = LiftedLine("X40 Y10", "X50 Y10");
+  const std::string other = LiftedLine("X40 Y25", "X50 Y25");
+  const std::string first = kHead + kLifted + With(kNextLayer, "Z.4", "Z.6") +
+                            With(With(LiftedLine("X10 Y40", "X20 Y40"), "Z.6", "Z1"), "Z.2", "Z.6");
+
+  EXPECT_EQ(Broken(first + next + one + other, first + next + other + one), "");
+}
+
 TEST(VerifyLifts, NoneIsInventedNorHigher) {
   const std::string higher =
       With(kLifted, Lifted("X10 Y30"), With(Lifted("X10 Y30"), "Z.6", "Z.9"));
