@@ -57,21 +57,53 @@ void NoteLift(Link& link) {
   link.ramp_ends = link.ramp_mm > 0 && arrival.to.z == arrival.from.z;
 }
 
-// What the link does to pull filament back, up to its first mark, lift or travel.
-std::vector<LinkStep> PullOf(const Link& link) {
+bool IsOfPull(const LinkStep& step) {
+  return (step.kind == StepKind::kFilament && step.filament < 0) ||
+         step.kind == StepKind::kFirmwareRetract || step.kind == StepKind::kDwell ||
+         step.kind == StepKind::kWipe || step.kind == StepKind::kWipeMark ||
+         step.kind == StepKind::kFeed;
+}
+
+bool SaysNothing(const LinkStep& step) {
+  return step.kind == StepKind::kBlank || step.kind == StepKind::kComment ||
+         step.kind == StepKind::kSlot || step.kind == StepKind::kProgress;
+}
+
+// How a link first pulls filament back, before any travel and whatever mark stands before that.
+struct Pull {
   std::vector<LinkStep> steps;
-  for (const LinkStep& step : link.steps) {
-    const bool filament = step.kind == StepKind::kFilament && step.filament < 0;
-    if (filament || step.kind == StepKind::kFirmwareRetract || step.kind == StepKind::kDwell ||
-        step.kind == StepKind::kWipe || step.kind == StepKind::kWipeMark ||
-        step.kind == StepKind::kFeed) {
-      steps.push_back(step);
-    } else if (step.kind != StepKind::kBlank && step.kind != StepKind::kComment &&
-               step.kind != StepKind::kSlot && step.kind != StepKind::kProgress) {
+  size_t begin = 0;  // the first and the last of them are steps [begin, end) of the link
+  size_t end = 0;
+  Decimal pulled = 0;
+  bool wipes = false;
+  bool firmware = false;
+
+  bool any() const { return pulled > 0 || firmware; }
+  bool Replaces(const Pull& other) const {
+    return any() && other.any() && firmware == other.firmware &&
+           std::abs(pulled - other.pulled) <= kRetractionSlack;
+  }
+};
+
+Pull PullOf(const Link& link) {
+  Pull pull;
+  for (size_t i = link.fixed; i < link.steps.size(); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (SaysNothing(step)) continue;
+    if (IsOfPull(step)) {
+      if (pull.steps.empty()) pull.begin = i;
+      pull.end = i + 1;
+      pull.steps.push_back(step);
+      pull.pulled -= step.filament;
+      pull.wipes = pull.wipes || step.kind == StepKind::kWipe;
+      pull.firmware = pull.firmware || step.kind == StepKind::kFirmwareRetract;
+    } else if (pull.any() || step.kind == StepKind::kTravel) {
       break;
+    } else {
+      pull = {};
     }
   }
-  return steps;
+  return pull;
 }
 
 bool StaysWithTravel(const LinkStep& step) {
@@ -83,19 +115,12 @@ bool StaysWithTravel(const LinkStep& step) {
 
 std::optional<Link> WithWipeOf(Link form, const Link& own) {
   assert(form.arrival >= 0);
-  std::vector<LinkStep> steps = PullOf(own);
-  Decimal pulled = 0;
-  bool wipes = false;
-  bool firmware = false;
-  for (const LinkStep& step : steps) {
-    pulled -= step.filament;
-    wipes = wipes || step.kind == StepKind::kWipe;
-    firmware = firmware || step.kind == StepKind::kFirmwareRetract;
-  }
-  if (!wipes || form.fixed > 0 || firmware != form.firmware ||
-      std::abs(pulled - form.pulled) > kRetractionSlack) {
+  const Pull pull = PullOf(own);
+  if (!pull.wipes || form.fixed > 0 || pull.firmware != form.firmware ||
+      std::abs(pull.pulled - form.pulled) > kRetractionSlack) {
     return std::nullopt;
   }
+  std::vector<LinkStep> steps = pull.steps;
   const auto arrival = form.steps.begin() + form.arrival;
   std::copy_if(form.steps.begin(), arrival, std::back_inserter(steps), StaysWithTravel);
   form.arrival = static_cast<int>(steps.size());
@@ -104,6 +129,22 @@ std::optional<Link> WithWipeOf(Link form, const Link& own) {
   form.wipes = true;
   form.departs = false;
   return form;
+}
+
+Link WithPullOf(const Link& link, const Link& own) {
+  const Pull given = PullOf(link);
+  const Pull pull = PullOf(own);
+  if (given.wipes == pull.wipes || !pull.Replaces(given)) return link;
+  Link out = link;
+  out.steps.assign(link.steps.begin(),
+                   link.steps.begin() + static_cast<std::ptrdiff_t>(given.begin));
+  out.steps.insert(out.steps.end(), pull.steps.begin(), pull.steps.end());
+  for (size_t i = given.begin; i < link.steps.size(); ++i) {
+    if (static_cast<int>(i) == link.arrival) out.arrival = static_cast<int>(out.steps.size());
+    if (i >= given.end || SaysNothing(link.steps[i])) out.steps.push_back(link.steps[i]);
+  }
+  out.wipes = pull.wipes;
+  return out;
 }
 
 Link ReadLink(const GcodeFile& file, size_t index) {

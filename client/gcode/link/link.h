@@ -116,9 +116,13 @@ bool LeadsAside(const Link& link, size_t i);
 // The slots that the link itself sets before its first mark.
 SlotMask SetBeforeMarks(const Link& link);
 
-// `form`, which pulls filament back as `own` does before its first mark; nothing if `own` pulls
-// back another amount there, or does not wipe. REQUIRES: form.arrival >= 0.
+// `form`, which pulls filament back as `own` first does; nothing if `own` pulls back another amount
+// there, or does not wipe. REQUIRES: form.arrival >= 0.
 std::optional<Link> WithWipeOf(Link form, const Link& own);
+
+// `link` with its marks, in which filament is first pulled back as in `own`, if one of the two
+// wipes there and the other one does not, and both pull back as much.
+Link WithPullOf(const Link& link, const Link& own);
 
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);

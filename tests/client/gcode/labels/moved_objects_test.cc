@@ -146,6 +146,18 @@ TEST(MovedObjects, KeepTheWipeBetweenNeighbors) {
   }
 }
 
+// A wipe goes with its path, and not with the labels behind it.
+TEST(MovedObjects, LeaveNoWipeBehind) {
+  for (const Notation& notation : Notations()) {
+    PillarPrint print;
+    print.wipes = true;
+    print.unwiped = 2;
+    const GcodeRewrite rewrite = Optimised(Text(print, notation));
+    EXPECT_LT(Share(rewrite), 0.9) << notation.name << " " << rewrite.unproven;
+    EXPECT_EQ(rewrite.layers_unproven, 0) << notation.name << " " << rewrite.unproven;
+  }
+}
+
 TEST(MovedObjects, StayInPrintsObjectByObject) {
   PillarPrint print;
   print.one_by_one = true;

@@ -71,6 +71,7 @@ struct PillarPrint {
   std::string before_layer;   // behind the mark of each layer
   std::string between;        // before the label of each object but the first
   bool wipes = false;         // behind each pillar
+  int unwiped = -1;           // but for this one, as slicers do behind what they cannot wipe along
   bool one_by_one = false;    // a pillar is finished before the next is begun
 
   double XOf(int pillar) const { return 60 + apart * (pillar % 2); }
@@ -90,7 +91,7 @@ inline std::string Loop(double x, double y, double half) {
 // Pulls filament back behind pillar `from`; less than 0: it is pulled back already.
 inline std::string PullBehind(const PillarPrint& print, int from) {
   if (from < 0) return "";
-  if (!print.wipes) return "G1 E-.8 F2100\n";
+  if (!print.wipes || from == print.unwiped) return "G1 E-.8 F2100\n";
   return absl::StrCat("G1 E-.2 F2100\n;WIPE_START\nG1 F7200\nG1 X", print.XOf(from), " Y",
                       print.YOf(from) + print.side / 2 - 3, " E-.55\n;WIPE_END\nG1 E-.05 F2100\n");
 }
