@@ -408,7 +408,7 @@ def rest(before, after, options):
 def progress(before, after, options):
     """What a display is told comes in sequence, each share near where it is true."""
     kinds = {kind for _, kind, _, _ in before.progress}
-    stops = None
+    clocks = None
     for kind in sorted(kinds):
         old = [(value, now, line) for line, k, value, now in before.progress if k == kind]
         new = [(value, now, line) for line, k, value, now in after.progress if k == kind]
@@ -417,11 +417,22 @@ def progress(before, after, options):
             continue
         found = misplaced(kind, old, new, before.seconds, after.seconds)
         if found:
-            stops = stops or (stopping_clock(before), stopping_clock(after))
-            stopping = [[(value, clock(line), line) for value, _, line in told]
-                        for told, clock in zip((old, new), stops)]
-            if misplaced(kind, *stopping, stops[0](None), stops[1](None)):
+            clocks = clocks or [(clock(before), clock(after)) for clock in (nominal_clock, stopping_clock)]
+            if all(misplaced_by(kind, old, new, was, now, after) for was, now in clocks):
                 yield found
+
+
+def misplaced_by(kind, old, new, was, now, after):
+    """The same by two clocks; a line stands no nearer than where a path begins, or one of its moves ends."""
+    told = [[(value, clock(line), line) for value, _, line in side] for side, clock in ((old, was), (new, now))]
+    places = sorted({now(line) for move in after.deposits() for line in (move.line, move.line + 1)})
+    return misplaced(kind, *told, was(None), now(None), places)
+
+
+def nominal_clock(side):
+    lines = [move.line for move in side.moves]
+    moments = [move.begin for move in side.moves] + [side.seconds]
+    return lambda line: moments[-1 if line is None else bisect.bisect_left(lines, line)]
 
 
 def stopping_clock(side):
@@ -441,13 +452,17 @@ def stopping_clock(side):
     return lambda line: moments[-1 if line is None else bisect.bisect_left(lines, line)]
 
 
-def misplaced(kind, old, new, old_seconds, new_seconds):
+def misplaced(kind, old, new, old_seconds, new_seconds, places=()):
     """A fault, if there is one. What states no share is true where it was."""
     worst = (0.0, None)
     for (value, then, _), (_, now, line) in zip(old, new):
         was, share = 100 * then / old_seconds, 100 * now / new_seconds
         stated = value if isinstance(value, float) else was
         off = abs(stated - share) - abs(stated - was)
+        if places:
+            there = was / 100 * new_seconds
+            at = bisect.bisect(places, there)
+            off -= 100 * min(abs(place - there) for place in places[max(at - 1, 0):at + 1]) / new_seconds
         worst = max(worst, (off, (line, value, was, share)), key=lambda pair: pair[0])
     if worst[0] <= SHARE_SLACK:
         return None

@@ -242,6 +242,16 @@ class Checks(unittest.TestCase):
         self.assertNotIn("progress", faults(told(63), told(65)))
         self.assertIn("progress", faults(told(63), told(90)))
 
+    def test_a_share_stands_at_the_nearer_end_of_a_long_move(self):
+        def told(at, first):
+            square = ["G1 X20 Y10 E1", "G1 X20 Y30 E2", "G1 X10 Y30 E1", "G1 X10 Y80 E5"]
+            lines = ["G1 X10 Y10 Z.2 F6000", "G1 F600", *first, *square]
+            return HEAD + lines[:at] + ["M73 P21"] + lines[at:]
+
+        before = told(5, ["G1 X15 Y10", "G1 X10 Y10"])  # 2 of 10 seconds
+        self.assertNotIn("progress", faults(before, told(3, [])))
+        self.assertIn("progress", faults(before, told(5, [])))
+
     def test_any_message_of_progress_is_followed(self):
         def told(at, text):
             return self.towers[:at] + [text] + self.towers[at:]
