@@ -121,25 +121,27 @@ class Matcher {
     return to_start <= kSamePlaceMm || to_start <= DistanceOf(original_.segments[s].end, start);
   }
 
-  // How many segments of the original follow one another from `s` on as those of `path` do from
-  // `at` on.
-  uint32_t RunFrom(uint32_t s, const TracePath& path, uint32_t at) const {
-    const bool forward = IsForward(s, optimised_.StartOf(path, at));
+  // How many segments of the original follow one another from `s` on as those of path `p` do from
+  // `at` on, over the gap of a loop as well.
+  uint32_t RunFrom(uint32_t s, uint32_t p, uint32_t at) const {
+    const bool forward = IsForward(s, optimised_.StartOf(optimised_.paths[p], at));
     const uint32_t most = original_.paths[path_of_[s - first_]].size();
     uint32_t run = 1;
-    for (; run < most && at + run < path.end_segment; ++run) {
+    for (; run < most; ++run) {
       s = Next(s, forward);
-      if (s == kNone || !Unused(s) ||
-          original_.segments[s].digest != optimised_.segments[at + run].digest) {
-        break;
+      if (s == kNone || !Unused(s)) break;
+      if (at + run == optimised_.paths[p].end_segment) {
+        if (p + 1 == is_.end_path || !OnlyGap(p, p + 1)) break;
+        ++p;
       }
+      if (original_.segments[s].digest != optimised_.segments[at + run].digest) break;
     }
     return run;
   }
 
   // The segment of the original for segment `at`: of several the one that continues the current
   // path, otherwise the one that agrees for longest.
-  uint32_t Find(const TracePath& path, uint32_t at) {
+  uint32_t Find(uint32_t p, uint32_t at) {
     const uint64_t digest = optimised_.segments[at].digest;
     if (due_ != kNone && Unused(due_) && original_.segments[due_].digest == digest) return due_;
     uint32_t found = kNone;
@@ -149,10 +151,10 @@ class Matcher {
       return ++others < kMostAlike;
     });
     if (others <= 1) return found;
-    uint32_t longest = RunFrom(found, path, at);
+    uint32_t longest = RunFrom(found, p, at);
     table_.ForEachUnused(digest, [&](uint32_t s) {
       if (s == found) return true;
-      const uint32_t run = RunFrom(s, path, at);
+      const uint32_t run = RunFrom(s, p, at);
       if (run > longest) {
         found = s;
         longest = run;
@@ -165,7 +167,7 @@ class Matcher {
   void MatchPath(uint32_t p) {
     const TracePath& path = optimised_.paths[p];
     for (uint32_t at = path.first_segment; at < path.end_segment;) {
-      uint32_t s = Find(path, at);
+      uint32_t s = Find(p, at);
       if (s == kNone) return;  // not the same deposits
       Visit visit;
       visit.path = path_of_[s - first_];

@@ -40,6 +40,20 @@ TEST(FindVisits, EqualLoopsAreTakenOnceEach) {
   EXPECT_EQ(Broken(a, Repeated(kSquare, 41) + kTwo), "same_print");
 }
 
+// Rounding makes one line of the second loop another one. What is printed in one go begins where
+// they are still alike, and goes on over their gaps.
+TEST(FindVisits, LoopsOfOnePlaceThatDifferBehindTheirGapAreToldApart) {
+  const std::string begin = Travel("X10 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y10 E.4\n";
+  const std::string up = "G1 X20 Y20 E.4\n";
+  const std::string up_other = "G1 X20 Y20 E.40001\n";
+  const std::string back = "G1 X10 Y20 E.4\nG1 X10 Y10.1 E.396\n";
+  const std::string a = kHead + begin + up + back + begin + up_other + back;
+  const std::string over = back + "G1 X10 Y10\nG1 X20 Y10 E.4\n";
+  const std::string b =
+      kHead + Travel("X20 Y20") + ";TYPE:Internal infill\nG1 F1800\n" + over + up_other + over + up;
+  EXPECT_EQ(Broken(a, b, Policy::kFree), "");
+}
+
 // A loop of a nozzle of 1.8 mm that ends 0.27 mm short of its start, and the same begun elsewhere
 // with its gap.
 TEST(FindVisits, LoopsOfLargeNozzlesMayEndFartherFromTheirStart) {
