@@ -141,13 +141,15 @@ class SectionGaps {
   }
 
   // The loop that path `other` prints, or ends with, if it is one that takes its gap along. Each is
-  // found once.
-  std::optional<MovedLoop> Find(uint32_t other) {
+  // found once. The other has `least` more of the segment that closes the gap than the original,
+  // and as many less of those that it prints changed: where loops have changed their starts with
+  // each other, one may close its gap with the segment that another one has lost.
+  std::optional<MovedLoop> Find(uint32_t other, int64_t least) {
     const TracePath& path = optimised_.paths[other];
-    if (path.joined || !IsSurplus(path.end_segment - 1)) return std::nullopt;
+    if (path.joined || SurplusOf(path.end_segment - 1) < 1) return std::nullopt;
     std::optional<MovedLoop> loop;
     for (uint32_t first = path.first_segment; first < path.end_segment && !loop; ++first) {
-      loop = FindFrom(first, other);
+      loop = FindFrom(first, other, least);
     }
     if (!loop) return std::nullopt;
     found_[loop->path - first_path_] = true;
@@ -158,14 +160,13 @@ class SectionGaps {
   }
 
  private:
-  std::optional<MovedLoop> FindFrom(uint32_t first, uint32_t other) {
+  std::optional<MovedLoop> FindFrom(uint32_t first, uint32_t other, int64_t least) {
     std::optional<MovedLoop> loop;
     const auto is_found = [this](uint32_t p) -> bool { return found_[p - first_path_]; };
     const auto is_it = [&](const LoopStart& start) {
       loop = LoopAt(start, first, other);
-      if (loop && !(IsSurplus(loop->closing) && LacksSegmentsOf(*loop) && IsMoved(*loop))) {
-        loop.reset();
-      }
+      const bool may_be = loop && SurplusOf(loop->closing) >= least && Lacks(*loop, least);
+      if (!may_be || !IsMoved(*loop)) loop.reset();
       return loop.has_value();
     };
     const uint32_t size = optimised_.paths[other].end_segment - first;
@@ -182,11 +183,10 @@ class SectionGaps {
     }
   }
 
-  // The original has fewer of this segment of the other: where it prints loops one upon the other
+  // How many more of this segment the other has: where the original prints loops one upon the other
   // that begin at different points, one looks like another one that was moved.
-  bool IsSurplus(uint32_t segment) const {
-    const auto found = surplus_.find(optimised_.segments[segment].digest);
-    return found != surplus_.end() && found->second > 0;
+  int64_t SurplusOf(uint32_t segment) const {
+    return surplus_.at(optimised_.segments[segment].digest);
   }
 
   // Those of the original that the other prints changed.
@@ -197,12 +197,10 @@ class SectionGaps {
     return digests;
   }
 
-  bool LacksSegmentsOf(const MovedLoop& loop) const {
+  bool Lacks(const MovedLoop& loop, int64_t least) const {
     const std::vector<uint64_t> digests = SegmentsOf(loop);
-    return std::all_of(digests.begin(), digests.end(), [this](uint64_t digest) {
-      const auto found = surplus_.find(digest);
-      return found != surplus_.end() && found->second < 0;
-    });
+    return std::all_of(digests.begin(), digests.end(),
+                       [&](uint64_t digest) { return surplus_.at(digest) <= -least; });
   }
 
   // Nothing if `other` has too many or too few segments from `first` on to be the loop.
@@ -344,8 +342,11 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
   if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) return;
   if (!DepositsDiffer(original, was, optimised, is)) return;
   SectionGaps of_section(original, was, optimised, is);
-  for (uint32_t p = is.first_path; p < is.end_path && !limit.Ended(); ++p) {
-    const std::optional<MovedLoop> loop = of_section.Find(p);
+  // Once more for loops of one place that have changed their starts with each other.
+  const uint32_t paths = is.end_path - is.first_path;
+  for (uint32_t i = 0; i < 2 * paths && !limit.Ended(); ++i) {
+    const uint32_t p = is.first_path + i % paths;
+    const std::optional<MovedLoop> loop = of_section.Find(p, i < paths ? 1 : 0);
     if (!loop) continue;
     const TracePath& path = original.paths[loop->path];
     TraceSegment& last = optimised.segments[optimised.paths[p].end_segment - 1];
@@ -364,6 +365,7 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
       gap.as.push_back(closing.digest);
     }
   }
+  std::sort(found.removed.begin(), found.removed.end());
 }
 
 }  // namespace

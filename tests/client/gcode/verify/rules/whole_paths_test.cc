@@ -138,6 +138,24 @@ TEST(VerifyWholePaths, ALoopUponAnotherIsNotTakenForThatOneMoved) {
   EXPECT_THAT(Broken(kHead + upon + kClipped, kHead + upon + upon), HasSubstr("same_print"));
 }
 
+// Of three loops in one place the second begins where the others do not, and now where they did;
+// the third begins where the second did. Rounding tells them apart.
+TEST(VerifyWholePaths, LoopsOfOnePlaceMayChangeTheirStarts) {
+  const auto square = [](const std::string& to, const std::string& sides) {
+    return Travel(to) + ";TYPE:Perimeter\nG1 F1200\n" + sides;
+  };
+  const std::string other =
+      square("X20 Y10", "G1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X19.9 Y10 E.3961\n");
+  const std::string elsewhere =
+      square("X20 Y20", "G1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\nG1 X20 Y19.9 E.396\n");
+  const std::string moved = square(
+      "X10 Y10", "G1 X20 Y10 E.40011\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10.1 E.39599\n");
+  const std::string a = kHead + kClipped + other + kClipped;
+
+  EXPECT_EQ(Broken(a, kHead + elsewhere + moved + kClosedOnward), "");
+  EXPECT_NE(Broken(a, kHead + elsewhere + moved + moved), "");
+}
+
 // The last path of the file has one segment of a loop with 200: no other one can be looked at
 // there.
 TEST(VerifyWholePaths, APieceOfALoopIsNotThatLoopMoved) {
