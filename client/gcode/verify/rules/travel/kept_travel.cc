@@ -2,14 +2,12 @@
 // change: the same steps lead from the one to the other.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
-#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/travel_ends.h"
@@ -18,9 +16,6 @@
 
 namespace traverse::gcode {
 namespace {
-
-// So many different ways between the same two segments are compared; no slicer has as many.
-constexpr size_t kMostAlike = 64;
 
 // Straight travel may come in several pieces.
 bool GoesOn(const TraceMove& before, const TraceMove& move) {
@@ -68,42 +63,31 @@ uint64_t DigestOfLink(const TraceChunk& chunk, uint32_t link) {
   return Mix(EndsOf(chunk, link), Mix(before.digest, behind.digest));
 }
 
-uint64_t DigestOfMoves(const std::vector<TraceMove>& moves) {
-  uint64_t digest = moves.size();
-  const auto add = [&digest](auto value) { digest = Mix(digest, std::bit_cast<uint64_t>(value)); };
-  for (const TraceMove& move : moves) {
-    for (const Point& point : {move.to, move.middle}) {
-      add(point.x);
-      add(point.y);
-    }
-    add(move.z_to_mm);
-    add(move.filament);
-    add(move.feed);
-    add(move.acceleration);
-    add(move.spiral);
-    add(uint64_t{2} * static_cast<uint64_t>(move.kind) + (move.firmware ? 1 : 0));
-  }
-  return digest;
-}
-
-// The original's travel moves by the segments between which they stand; travel moves that are alike
-// count once, so that files of equal paths take no longer than others.
-struct KeptTravels {
-  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> links;
-  absl::flat_hash_set<uint64_t> exact;  // DigestOfLink and DigestOfMoves
-};
-
-KeptTravels TravelsOf(const LayerPair& layer) {
+// The original's links by the segments between which they stand. Not of paths that end or begin
+// with a segment as another path of the layer does: some slicers print a line several times in one
+// place, and then nobody can say which of them the next path follows.
+absl::flat_hash_map<uint64_t, uint32_t> LinksOf(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
-  KeptTravels travels;
+  const auto end_of = [&was](uint32_t path) {
+    return was.segments[was.paths[path].end_segment - 1].digest;
+  };
+  const auto begin_of = [&was](uint32_t path) {
+    return was.segments[was.paths[path].first_segment].digest;
+  };
   // The first link of a chunk follows a path of the chunk before.
-  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
-    const uint64_t digest = DigestOfLink(was, link);
-    const bool is_new = travels.exact.insert(Mix(digest, DigestOfMoves(MovesOf(was, link)))).second;
-    std::vector<uint32_t>& links = travels.links[digest];
-    if (is_new && links.size() < kMostAlike) links.push_back(link);
+  const uint32_t first = std::max(layer.first_path_was(), 1u);
+  absl::flat_hash_map<uint64_t, int> ends;
+  absl::flat_hash_map<uint64_t, int> begins;
+  for (uint32_t path = first - 1; path < layer.end_path_was(); ++path) {
+    ++ends[end_of(path)];
+    ++begins[begin_of(path)];
   }
-  return travels;
+  absl::flat_hash_map<uint64_t, uint32_t> links;
+  for (uint32_t link = first; link < layer.end_path_was(); ++link) {
+    if (ends[end_of(link - 1)] > 1 || begins[begin_of(link)] > 1) continue;
+    links.emplace(DigestOfLink(was, link), link);
+  }
+  return links;
 }
 
 // A path that leads back along itself is the same the other way round, and may have been turned.
@@ -117,18 +101,6 @@ bool LeadsBack(const TraceChunk& chunk, uint32_t path) {
   return true;
 }
 
-// The moves of those of the original's `links` that are the same as `has`; of one of them if none
-// is.
-std::vector<TraceMove> SameOf(const TraceChunk& was, const std::vector<uint32_t>& links,
-                              const std::vector<TraceMove>& has) {
-  std::vector<TraceMove> had;
-  for (const uint32_t link : links) {
-    had = MovesOf(was, link);
-    if (std::equal(had.begin(), had.end(), has.begin(), has.end(), SameMove)) break;
-  }
-  return had;
-}
-
 std::string_view NameOf(const std::vector<TraceMove>& moves,
                         std::vector<TraceMove>::const_iterator move) {
   return move == moves.end() ? "path" : MoveKindName(move->kind);
@@ -139,24 +111,21 @@ std::string_view NameOf(const std::vector<TraceMove>& moves,
 void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  const KeptTravels travels = TravelsOf(layer);
+  const absl::flat_hash_map<uint64_t, uint32_t> links = LinksOf(layer);
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     if (layer.IsHidden(link)) continue;
-    const uint64_t digest = DigestOfLink(is, link);
-    const auto found = travels.links.find(digest);
-    if (found == travels.links.end()) continue;
+    const auto found = links.find(DigestOfLink(is, link));
+    if (found == links.end() || LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
     const std::vector<TraceMove> has = MovesOf(is, link);
-    if (travels.exact.contains(Mix(digest, DigestOfMoves(has)))) continue;
-    if (LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
-    const std::vector<TraceMove> had = SameOf(was, found->second, has);
+    const std::vector<TraceMove> had = MovesOf(was, found->second);
     const auto [one, other] =
         std::mismatch(had.begin(), had.end(), has.begin(), has.end(), SameMove);
     if (one == had.end() && other == has.end()) continue;
     const bool more = other != has.end();
     findings.breaks.push_back(
         {VerifyRule::kKeptTravels,
-         one == had.end() ? was.LineOf(was.paths[found->second.front()]) : one->line,
+         one == had.end() ? was.LineOf(was.paths[found->second]) : one->line,
          more ? other->line : is.LineOf(is.paths[link]), layer.index(),
          absl::StrFormat("a %s between two paths that follow each other in the original too, "
                          "which has another %s there",
