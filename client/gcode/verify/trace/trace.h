@@ -100,6 +100,7 @@ struct TraceLink {
   uint32_t end_move = 0;
   bool new_layer = false;  // it contains a mark of a layer or a change of height
   bool scripted = false;   // it contains unknown lines
+  bool first = false;      // of the print: it comes from nowhere, or from the start script
   uint32_t fixed = 0;      // so many of its moves stand before the last of these
 };
 

@@ -345,6 +345,7 @@ void Tracer::Mark() {
   if (!in_print_) {
     link_.scripted = false;
     link_.fixed = 0;
+    link_.first = true;
   }
   in_print_ = true;
 }

@@ -16,7 +16,7 @@ namespace traverse::gcode {
 class Tracer {
  public:
   // `marked`: the file has marks of layers, so that what stands before the first one is a script.
-  explicit Tracer(bool marked) : in_print_(!marked) {}
+  explicit Tracer(bool marked) : in_print_(!marked) { link_.first = !marked; }
 
   // A line that `machine` has just done, in section `section`.
   void Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section);

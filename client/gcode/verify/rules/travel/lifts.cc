@@ -219,14 +219,11 @@ class LinkProfiles {
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
-  // The travel to the first path comes from nowhere, or from the start script: it shows nothing
-  // about travel between layers.
-  const bool first =
-      layer.index() == 0 && link == (only_new ? layer.first_path_is() : layer.first_path_was());
-  if (first || (traced.first_move < traced.end_move && !chunk.moves[traced.first_move].in_print)) {
-    return;
-  }
-  if (!traced.scripted) LinkProfiles(layer, chunk, link, only_new, seen).Append();
+  // The travel to the first path shows nothing about travel between layers.
+  const bool in_print =
+      traced.first_move == traced.end_move || chunk.moves[traced.first_move].in_print;
+  if (traced.first || traced.scripted || !in_print) return;
+  LinkProfiles(layer, chunk, link, only_new, seen).Append();
 }
 
 std::string KindText(size_t kind) {

@@ -33,6 +33,23 @@ TEST(VerifyLifts, OfTheFirstTravelOfAllTellNothingOfTravelsBetweenLayers) {
   EXPECT_EQ(Broken(first + inside + kSquare + outside, first + outside + inside + kSquare), "");
 }
 
+// Nor where a line is primed before the first mark of a layer, higher than the layer is.
+TEST(VerifyLifts, OfTheTravelBehindAPurgeLineTellNothingEither) {
+  const std::string head = "M83\nG1 Z.3 F9000\nG1 X30 Y12\nG1 X60 Y12 E9 F1000\n" + kHead;
+  const std::string inside = LiftedLine("X12 Y15", "X18 Y15");
+  const std::string outside = LiftedLine("X30 Y5", "X35 Y5");
+  const std::string square = With(kSquare, Travel("X10 Y10"), Lifted("X10 Y10"));
+  const std::string last = LiftedLine("X0 Y5", "X5 Y5");
+  const std::string next =
+      ";LAYER_CHANGE\nG1 E-1 F2100\nG1 Z.8 F9000\nG1 X12 Y15 F9000\nG1 Z.4\n"
+      "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X18 Y15 E.3\n";
+  const std::string behind = next + With(With(square, "Z.6", "Z.8"), "Z.2", "Z.4");
+
+  EXPECT_EQ(Broken(head + outside + square + inside + last + behind,
+                   head + inside + outside + square + last + behind),
+            "");
+}
+
 TEST(VerifyLifts, AreNeitherDroppedNorHalvedNorDoneTooLate) {
   const std::string travel = Lifted("X10 Y30");
   for (const std::string& other :
