@@ -15,17 +15,18 @@ constexpr size_t kProbes = 24;
 // in one place are told apart as far as this reaches; the others stay as they are named.
 constexpr size_t kLooksPerSegment = 250;
 
-// The neighbor's middle is one line further; it may be off by this much of a width.
-constexpr double kNeighborSlack = 0.45;
+// The neighbor's middle is a width away, or somewhat more. The verifier looks as far as 0.9 mm.
+constexpr double kReachWidths = 1.35;
+constexpr double kMostReachMm = 0.85;
 
-// A point on the right of the middle of segment `k`, where a neighbor would run.
+// A line on the right of the middle of segment `k`, which a neighbor would cross.
 Segment ProbeAt(const Outline& outline, size_t k) {
   const Point a = outline.shape()[k];
   const Point b = outline.shape()[k + 1];
   const Point middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
   const double length = Distance(a, b);
   if (!(length > 0)) return {middle, middle, 0};
-  const double reach = 0.9 * outline.width_mm / length;
+  const double reach = std::min(kReachWidths * outline.width_mm, kMostReachMm) / length;
   return {middle, {middle.x + (b.y - a.y) * reach, middle.y - (b.x - a.x) * reach}, 0};
 }
 
@@ -45,14 +46,12 @@ void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid
                   Probes& probes) {
   const size_t segments = outline.shape().size() - 1;
   const size_t step = std::max<size_t>(1, segments / kProbes);
-  const double slack = kNeighborSlack * outline.width_mm;
   for (size_t k = 0; k < segments; k += step) {
     const Segment probe = ProbeAt(outline, k);
-    const Segment end{probe.b, probe.b, 0};
     bool hit = false;
     grid.ForEachOnTravel(probe.a, probe.b, looks, [&](uint32_t s) {
       const Segment& other = grid.segments()[s];
-      hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
+      hit = other.path != loop && Cross(probe.a, probe.b, other.a, other.b);
       return !hit;
     });
     const double length = Distance(outline.shape()[k], outline.shape()[k + 1]);

@@ -130,6 +130,19 @@ TEST(Loops, WhatLiesBesideAnotherLoopForMostOfItsLengthIsAnInnerWall) {
   EXPECT_EQ(OutlinesOf(*file).front().feature, Feature::kInnerWall);
 }
 
+// The verifier looks straight to the outside, too: what runs past there beside the line of sight
+// hides nothing.
+TEST(Loops, ALoopThatOthersOnlyPassByIsSeen) {
+  std::string passing;
+  for (const auto& [x, y] : {std::pair(20.3, 9.7), {30.3, 20.3}, {19.7, 30.3}, {9.7, 19.7}}) {
+    passing += To(x - .2, y - .2, false) + "G1 F1200\n" + To(x + .2, y - .2, true) +
+               To(x + .2, y + .2, true) + To(x - .2, y + .2, true) + To(x - .2, y - .2, true);
+  }
+  const auto file = Read("M83\nG1 Z.2 F9000\n" + Square(10, false) + passing + To(50, 50, false));
+
+  EXPECT_EQ(OutlinesOf(*file).front().feature, Feature::kLoop);
+}
+
 TEST(Loops, TwoLinesThatDoNotCloseAreNoLoop) {
   const auto file = Read(
       "M83\nG1 Z.2 F9000\nG1 X0 Y0\nG1 X10 Y0 E.5\nG1 X10 Y10 E.5\nG1 X10 Y10.06 F9000\n"
