@@ -27,10 +27,10 @@ Link Stretched(Link rise, double length, Decimal highest) {
 }
 
 // Puts the end of the slope of `rise` on the first stretch of `travel` from `from`, if that is
-// longer; else it rises over all of that stretch.
-void Slope(const Position& from, const Link& rise, std::vector<Position>& travel) {
+// longer; else it rises over all of that stretch. Lengths are in words of `unit_mm`.
+void Slope(const Position& from, const Link& rise, double unit_mm, std::vector<Position>& travel) {
   if (!rise.ramp_ends) return;
-  if (LengthXy(from, travel.front()) < rise.ramp_mm + kMinSlopeRestMm) return;
+  if (LengthXy(from, travel.front()) < rise.ramp_mm + kMinSlopeRestMm / unit_mm) return;
   Position end = Along(from, travel.front(), rise.ramp_mm);
   end.z = travel.front().z;
   travel.insert(travel.begin(), end);
@@ -279,7 +279,7 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
   if (top > z && !on_slope) {
     link_.Lift(top, like.lift_feed > 0 ? like.lift_feed : step.feed);
   } else if (top > z) {
-    Slope(link_.at(), rise, travel);
+    Slope(link_.at(), rise, link_.machine().UnitMm(), travel);
   }
   link_.Travels();
   for (const Position& at : travel) link_.Travel(step.line.Raw(file_.text), at, step.feed);
