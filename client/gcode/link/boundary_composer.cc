@@ -12,9 +12,11 @@ bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
 
 void LinkComposer::ComposeBoundary() {
   const uint32_t boundary = *form_.boundary;
-  // A wipe is of the path before it, wherever the marks stand.
+  // A wipe is of the path before it, wherever the label stands. But layers that the file leaves
+  // without one are left so.
+  const bool of_path = left_ && (file_.blocks[boundary].link & kLinkNewLayer) == 0;
   const std::shared_ptr<const Link> read = parts_.LinkTo(boundary);
-  const Link link = left_ ? WithPullOf(*read, *left_) : *read;
+  const Link link = of_path ? WithPullOf(*read, *left_) : *read;
   const Block& before = file_.blocks[boundary - 1];
   if (link.fixed > 0) {
     link_.Keep({before.end, link.steps[link.fixed - 1].line.next, StartBehind(file_, before),
