@@ -81,7 +81,8 @@ void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
       if (as_given && DepartureOf(link) == &step) Follow(step);
       return;
     case StepKind::kWipe: {
-      if (as_given) return Follow(step);
+      // Where the head has come down aside, not along the path.
+      if (as_given || PrimesBefore(link, i)) return Follow(step);
       for (size_t before = 0; before < i; ++before) {
         if (link.steps[before].kind == StepKind::kWipe) return;
       }

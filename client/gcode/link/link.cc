@@ -64,6 +64,10 @@ bool IsOfPull(const LinkStep& step) {
          step.kind == StepKind::kFeed;
 }
 
+bool Primes(const LinkStep& step) {
+  return step.filament > 0 || step.kind == StepKind::kFirmwareUnretract;
+}
+
 bool SaysNothing(const LinkStep& step) {
   return step.kind == StepKind::kBlank || step.kind == StepKind::kComment ||
          step.kind == StepKind::kSlot || step.kind == StepKind::kProgress;
@@ -213,9 +217,15 @@ const LinkStep* DepartureOf(const Link& link) {
   return departs && link.Leaves(place) ? &*first : nullptr;
 }
 
+bool PrimesBefore(const Link& link, size_t i) {
+  return std::any_of(link.steps.begin(), link.steps.begin() + static_cast<std::ptrdiff_t>(i),
+                     Primes);
+}
+
 WipeForm WipeOf(const Link& link) {
   WipeForm form;
   for (const LinkStep& step : link.steps) {
+    if (Primes(step)) break;
     if (step.kind == StepKind::kFilament && step.filament < 0) form.still_feed = step.feed;
     if (step.kind != StepKind::kWipe) continue;
     form.travel_mm += step.travel_mm;

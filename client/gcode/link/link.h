@@ -92,7 +92,7 @@ bool MayDepart(const GcodeFile& file, size_t index);
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
-// What the wipe of a link does.
+// What the wipe of a link does that stands before its first prime.
 struct WipeForm {
   double travel_mm = 0;
   Decimal pulled = 0;
@@ -101,6 +101,9 @@ struct WipeForm {
 };
 
 WipeForm WipeOf(const Link& link);
+
+// Whether the nozzle is opened on the way, before step `i`.
+bool PrimesBefore(const Link& link, size_t i);
 
 // Whether filament is pulled back before anything else moves in XY behind `departure`, a step of
 // `link` without unknown lines.

@@ -84,18 +84,31 @@ bool TurnsBackBetween(const TraceMove& before, const TraceMove& move,
   return true;
 }
 
-// By how much, at some point of `wipe`, the retracted filament is off an even rate; its moves are
-// those of `link`.
-float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wipe) {
+// The moves of the wipe after path `path`. Behind the first prime, as beside what is finished,
+// those of the original follow no path.
+std::vector<const TraceMove*> WipeMoves(const LayerPair& layer, const TraceChunk& chunk,
+                                        uint32_t path) {
+  std::vector<const TraceMove*> moves;
+  const TraceLink& link = chunk.links[path + 1];
+  bool primed = false;
+  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    primed |= move.kind == MoveKind::kPriming;
+    if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
+    if (!primed || !layer.IsKnown(move)) moves.push_back(&move);
+  }
+  return moves;
+}
+
+// By how much, at some point of `wipe`, the retracted filament is off an even rate.
+float Unevenness(const std::vector<const TraceMove*>& moves, const Wipe& wipe) {
   double pulled = 0;
   double length = 0;
   double most = 0;
   const double pull = static_cast<double>(wipe.pulled_mm / wipe.length_mm);
-  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
-    pulled -= static_cast<double>(move.filament) * 1e-6;
-    length += move.length_mm();
+  for (const TraceMove* move : moves) {
+    pulled -= static_cast<double>(move->filament) * 1e-6;
+    length += move->length_mm();
     most = std::max(most, std::abs(pulled - pull * length));
   }
   return static_cast<float>(most);
@@ -105,12 +118,11 @@ float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wip
 Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
                 absl::Span<const Piece> pieces, bool measure) {
   Wipe wipe;
-  const TraceLink& link = chunk.links[path + 1];
-  const TraceMove* before = nullptr;
-  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
-    const TraceMove* last = std::exchange(before, &move);
+  const std::vector<const TraceMove*> moves = WipeMoves(layer, chunk, path);
+  const TraceMove* last = nullptr;
+  for (const TraceMove* each : moves) {
+    const TraceMove& move = *each;
+    const TraceMove* before = std::exchange(last, each);
     const bool returns = wipe.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
     if (wipe.line == 0) wipe.line = move.line;
     wipe.known &= layer.IsKnown(move);
@@ -120,7 +132,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     const auto length = static_cast<float>(move.length_mm());
     if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
     if (!measure) continue;
-    wipe.turns_back |= last != nullptr && TurnsBackBetween(*last, move, pieces);
+    wipe.turns_back |= before != nullptr && TurnsBackBetween(*before, move, pieces);
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
     // A chord of the path has both its ends on it, but where it returns from a short move away.
     if (returns) continue;
@@ -128,7 +140,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     if (!move.arc) continue;
     wipe.turned_mm = std::max(wipe.turned_mm, static_cast<float>(TurnedMm(move, pieces)));
   }
-  if (measure && wipe.line != 0) wipe.uneven_mm = Unevenness(chunk, link, wipe);
+  if (measure && wipe.line != 0) wipe.uneven_mm = Unevenness(moves, wipe);
   return wipe;
 }
 

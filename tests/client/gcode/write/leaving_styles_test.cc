@@ -152,6 +152,11 @@ std::string OneByOne(const std::string& leave, const std::string& aside) {
   return text + pull + "G1 Z50 F600\nM84\n; slow_down_layer_time = 0\n";
 }
 
+TEST(LeavingStyles, WipesAsideStay) {
+  ExpectMovesFreelyAndIsProven(
+      OneByOne("", ";WIPE_START\nG1 F7200\nG1 X60 Y-28 E-.5\n;WIPE_END\nG1 E-.3 F2100\n"));
+}
+
 TEST(LeavingStyles, AnObjectLeftWithoutAWipeIsLeftSo) {
   ExpectMovesFreelyAndIsProven(OneByOne("G1 E-.8 F2100\n", "G1 E-.8 F2100\n"));
 }

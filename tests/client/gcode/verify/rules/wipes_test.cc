@@ -230,5 +230,22 @@ TEST(VerifyWipes, WithoutFilamentAreWipesToo) {
   EXPECT_EQ(Broken(head + two, head + bare), "wipes");
 }
 
+// Where the head has come down beside what is finished, some files wipe once more.
+TEST(VerifyWipes, AsideAreThoseOfTheOriginal) {
+  const std::string one = Wiped("X0 Y0", "X10 Y0", "X7 Y0");
+  const std::string other = Wiped("X0 Y10", "X10 Y10", "X7 Y10");
+  const std::string aside =
+      "G1 Z1 F9000\nG1 X60 Y30 F9000\nG1 Z.2\nG1 E1 F2100\nG1 E-.5 F2100\n;WIPE_START\nG1 F7200\n"
+      "G1 X60 Y32 E-.5\n;WIPE_END\n";
+  const std::string next = aside + Wiped("X80 Y0", "X90 Y0", "X87 Y0");
+  const std::string begin = kHead + "G1 E-1 F2100\n";
+  constexpr uint32_t kWipesAlone = RuleBit(VerifyRule::kWipes);
+
+  EXPECT_EQ(Broken(begin + one + other + next, begin + other + one + next, {}, kWipesAlone), "");
+  EXPECT_EQ(Broken(begin + one + other + next, begin + other + one + With(next, "Y32", "Y25"), {},
+                   kWipesAlone),
+            "wipes");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
