@@ -12,11 +12,12 @@ namespace {
 // Larger numbers are invalid, so sums of them stay far below overflow.
 constexpr int64_t kMaxNumber = 1'000'000'000;
 
-// A line taken apart: number, blanks, command, checksum, rest.
+// A line taken apart: number, blanks, command, blanks, checksum, rest.
 struct NumberedLine {
   std::optional<int64_t> number;
   std::string_view blanks;
   std::string_view command;
+  std::string_view blanks_behind;
   bool checksum = false;
   std::string_view rest;  // after the checksum: blanks and a comment
 };
@@ -56,7 +57,9 @@ NumberedLine TakeApart(std::string_view line) {
     const size_t at = ChecksumBefore(line, end);
     if (at == std::string_view::npos) continue;
     parts.checksum = true;
-    parts.command = line.substr(0, at);
+    const size_t command_end = line.substr(0, at).find_last_not_of(" \t") + 1;
+    parts.command = line.substr(0, command_end);
+    parts.blanks_behind = line.substr(command_end, at - command_end);
     parts.rest = line.substr(end);
     break;
   }
@@ -111,6 +114,7 @@ std::optional<LineNumbers> LearnLineNumbers(std::string_view text) {
     any = true;
     numbers.first = *parts.number;
     numbers.blanks = std::string(parts.blanks);
+    numbers.blanks_behind = std::string(parts.blanks_behind);
     numbers.checksums = parts.checksum;
     TakesComment(parts, numbers);
   }
@@ -156,6 +160,7 @@ std::string WithLineNumbers(std::string_view text, const LineNumbers& numbers) {
     out.append(content.substr(0, end));
     number += numbers.step;
     if (numbers.checksums) {
+      out += numbers.blanks_behind;
       unsigned char sum = 0;
       for (size_t i = begin; i < out.size(); ++i) sum ^= static_cast<unsigned char>(out[i]);
       absl::StrAppend(&out, "*", static_cast<int>(sum));

@@ -24,7 +24,8 @@ struct LineNumbers {
   size_t commands_before = 0;  // at the beginning, without numbers
   int64_t first = 0;
   int64_t step = 1;
-  std::string blanks;  // between number and command
+  std::string blanks;         // between number and command
+  std::string blanks_behind;  // between that and the checksum
   bool checksums = false;
   bool behind_comments = false;  // checksums stand after the comment of a line, not before it
 

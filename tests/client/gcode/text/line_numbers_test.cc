@@ -27,6 +27,7 @@ TEST(LineNumbers, TheChecksumIsTheExclusiveOrOfTheBytesBeforeIt) {
   EXPECT_EQ(There("N3 T0*57\nN4 G92 E0*67\nN5 G28*22\n"), "T0\nG92 E0\nG28\n");
   EXPECT_EQ(ThereAndBack("N3 T0*57\nN4 G92 E0*67\nN5 G28*22\n"),
             "N3 T0*57\nN4 G92 E0*67\nN5 G28*22\n");
+  EXPECT_EQ(There("N3 T0 *25\nN5 G28 *54\n"), "T0\nG28\n");
 }
 
 TEST(LineNumbers, CommentsBlankLinesAndLineEndsStay) {
@@ -40,7 +41,7 @@ TEST(LineNumbers, AreKeptInTheirForm) {
   for (const char* text :
        {"N10 G28\nN20 G1 X1 ; in\nN30 M117 2*3\n", "N7G28\nN8G1 X1\n", "N5  G28\nN4  G28\n",
         "M110 N0\nN1 G28\nN2 G28\n", "N1 G28*18 ; home\nN2 G28*17\n", "N1 G28*18\t;*5\n",
-        "N1 G28 ; home*38\nN2 G28*17\n", "N1 G28\n"}) {
+        "N1 G28 ; home*38\nN2 G28*17\n", "N1 G28\n", "N1 G28 *50\nN2 G28 *49 ; home\n"}) {
     EXPECT_EQ(ThereAndBack(text), text);
   }
 }
