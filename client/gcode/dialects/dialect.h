@@ -64,7 +64,6 @@ enum class Setting : uint8_t {
   kRetractLength,
   kRetractSpeed,
   kRetractBeforeTravel,
-  kOnlyRetractWhenCrossing,
   kAvoidCrossing,
   kTopFillPattern,
   kBottomFillPattern,

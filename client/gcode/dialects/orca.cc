@@ -47,7 +47,6 @@ constexpr SettingWord kSettings[] = {
     {"retraction_length", Setting::kRetractLength},
     {"retraction_speed", Setting::kRetractSpeed},
     {"retraction_minimum_travel", Setting::kRetractBeforeTravel},
-    {"reduce_infill_retraction", Setting::kOnlyRetractWhenCrossing},
     {"reduce_crossing_wall", Setting::kAvoidCrossing},
     {"top_surface_pattern", Setting::kTopFillPattern},
     {"bottom_surface_pattern", Setting::kBottomFillPattern},

@@ -48,7 +48,6 @@ constexpr SettingWord kSettings[] = {
     {"retract_length", Setting::kRetractLength},
     {"retract_speed", Setting::kRetractSpeed},
     {"retract_before_travel", Setting::kRetractBeforeTravel},
-    {"only_retract_when_crossing_perimeters", Setting::kOnlyRetractWhenCrossing},
     {"avoid_crossing_perimeters", Setting::kAvoidCrossing},
     {"top_fill_pattern", Setting::kTopFillPattern},
     {"bottom_fill_pattern", Setting::kBottomFillPattern},

@@ -57,7 +57,6 @@ void LayerDepartures::Note(uint32_t block) {
   noted.wipes = true;
   noted.turns = pulls_behind;
   for (const LinkStep& step : link.steps) {
-    if (step.kind == StepKind::kFilament && noted.mm == 0) noted.stands = true;
     if (step.kind != StepKind::kWipe) continue;
     noted.mm += step.travel_mm * mode.UnitMm();
     noted.as_given = mode.InMm(step.to);

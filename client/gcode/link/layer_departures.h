@@ -19,9 +19,8 @@ namespace traverse::gcode {
 
 struct Departure {
   double mm = 0;
-  Point as_given;       // where that ends after the path as sliced
-  bool wipes = false;   // pulls filament back meanwhile; else continues along the path
-  bool stands = false;  // and before, at a standstill
+  Point as_given;      // where that ends after the path as sliced
+  bool wipes = false;  // pulls filament back meanwhile; else continues along the path
 
   // Where a short move away from the path as sliced leads, before it wipes or as all that it does
   // (`departs`). In the latter case it is made only if what follows retracts, or does not, as in

@@ -86,9 +86,6 @@ void Apply(Setting setting, std::string_view value, MachineProfile& profile) {
     case Setting::kRetractBeforeTravel:
       profile.retract_before_travel = number;
       return;
-    case Setting::kOnlyRetractWhenCrossing:
-      profile.only_retract_when_crossing = value == "1";
-      return;
     case Setting::kAvoidCrossing:
       profile.avoid_crossing = value == "1";
       return;

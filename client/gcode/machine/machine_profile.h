@@ -39,7 +39,6 @@ struct MachineProfile {
 
   // The slicer's own rules, where its configuration is in the file.
   std::optional<double> retract_before_travel;
-  std::optional<bool> only_retract_when_crossing;
   std::optional<bool> avoid_crossing;
   std::optional<std::string> top_fill_pattern;
   bool monotonic_bottom = false;  // lines of bottom surfaces are printed in their order

@@ -63,9 +63,6 @@ uint32_t FirstLineOf(const Map& map) {
   return line;
 }
 
-// Anything at one speed, or with one acceleration.
-using SpeedKey = uint64_t;
-
 // A travel move between paths, with its heights.
 struct TravelProfile {
   // Pieces of the travel move, [from, to] above the layer.
