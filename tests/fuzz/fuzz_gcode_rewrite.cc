@@ -12,9 +12,9 @@
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/random_order.h"
+#include "tests/client/gcode/support/verified.h"
 #include "tests/fuzz/support/check.h"
 #include "tests/fuzz/support/gcode_mutator.h"
 

@@ -436,13 +436,4 @@ VerifyReport CheckGcode(std::string_view original, const std::string& original_n
   return gcode::CheckUnnumbered(was, is, options);
 }
 
-absl::Status VerifyGcode(std::string_view original, const std::string& original_name,
-                         std::string_view optimised, const std::string& optimised_name,
-                         const VerifyOptions& options) {
-  const VerifyReport report =
-      CheckGcode(original, original_name, optimised, optimised_name, options);
-  if (report.ok()) return absl::OkStatus();
-  return absl::FailedPreconditionError(report.breaks.front().message);
-}
-
 }  // namespace traverse

@@ -25,7 +25,6 @@
 #include <string>
 #include <string_view>
 
-#include "absl/status/status.h"
 #include "client/gcode/verify/permissions.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/work_limit.h"
@@ -44,24 +43,12 @@ struct VerifyOptions {
   gcode::WorkLimit limit = {};
 };
 
-// Options that only check that both print the same.
-inline VerifyOptions OnlySamePrint() {
-  VerifyOptions options;
-  options.rules = RuleBit(VerifyRule::kSamePrint);
-  return options;
-}
-
 // All breaks of the rules, with both lines of each: `b.gcode:118: WHAT (lifts; a.gcode:97)`. The
 // names are for messages. Uses two threads. Time is linear in the texts; memory holds some
 // megabytes of each, and some bytes per section and per travel between paths.
 VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
                         std::string_view optimised, const std::string& optimised_name,
                         const VerifyOptions& options = {});
-
-// OK if there is no break; otherwise FailedPrecondition with the first one.
-absl::Status VerifyGcode(std::string_view original, const std::string& original_name,
-                         std::string_view optimised, const std::string& optimised_name,
-                         const VerifyOptions& options = {});
 
 }  // namespace traverse
 

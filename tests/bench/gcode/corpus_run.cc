@@ -12,8 +12,8 @@
 #include "client/gcode/parallel.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "client/input/input_job.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::bench {
 namespace {

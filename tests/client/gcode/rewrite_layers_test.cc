@@ -9,9 +9,9 @@
 
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/scattered_lines.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

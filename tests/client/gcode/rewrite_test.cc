@@ -16,12 +16,12 @@
 #include "client/gcode/stated_times.h"
 #include "client/gcode/text/digest_line.h"
 #include "client/gcode/text/line_numbers.h"
-#include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 #include "tests/client/gcode/support/scattered_lines.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

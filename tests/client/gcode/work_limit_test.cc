@@ -17,6 +17,7 @@
 #include "client/gcode/verify/verifier.h"
 #include "client/input/input_job.h"
 #include "tests/client/gcode/support/samples.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

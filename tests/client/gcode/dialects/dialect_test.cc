@@ -8,8 +8,8 @@
 #include "client/gcode/machine/print_state.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/random_order.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

@@ -17,8 +17,8 @@
 #include "client/gcode/model/loops.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/labels/pillars.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

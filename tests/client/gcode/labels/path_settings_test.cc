@@ -13,7 +13,7 @@
 #include "absl/strings/string_view.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

@@ -11,8 +11,8 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/read_text.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

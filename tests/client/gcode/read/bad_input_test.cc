@@ -7,11 +7,11 @@
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/samples.h"
+#include "tests/client/gcode/support/verified.h"
 #include "tests/support/golden.h"
 
 namespace traverse::gcode {

@@ -11,9 +11,9 @@
 #include "client/gcode/model/loops.h"
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/random_order.h"
+#include "tests/client/gcode/support/verified.h"
 #include "tests/support/golden.h"
 
 namespace traverse::gcode {

@@ -8,9 +8,9 @@
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/plan/layer_plan.h"
 #include "client/gcode/plan/policy.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/read_text.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

@@ -10,10 +10,10 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/outline.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/read/block_text.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

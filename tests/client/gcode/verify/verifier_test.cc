@@ -1,7 +1,5 @@
 // Verifying: client/gcode/verify.
 
-#include "client/gcode/verify/verifier.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include "tests/client/gcode/support/mutation.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/samples.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {
@@ -112,8 +111,7 @@ TEST(VerifyGcode, NothingCrossesALineThatIsNotKnown) {
 }
 
 TEST(VerifyGcode, AtALineThatIsNotKnownTheHeadIsWhereItWas) {
-  const std::string a =
-      "M83\nG1 F600 X1 Y0 E1\nG0 X5 Y5\nG1 Z5\nPARK\nG1 Z0\nG0 X7 Y0\nG1 X8 E1\n";
+  const std::string a = "M83\nG1 F600 X1 Y0 E1\nG0 X5 Y5\nG1 Z5\nPARK\nG1 Z0\nG0 X7 Y0\nG1 X8 E1\n";
 
   for (const auto& [there, elsewhere] :
        {std::pair("X5 Y5", "X6 Y5"), std::pair("X5 Y5", "X5 Y6"), std::pair("Z5", "Z6")}) {

@@ -11,9 +11,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/random_order.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {

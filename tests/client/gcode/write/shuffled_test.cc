@@ -5,10 +5,10 @@
 #include <string>
 
 #include "client/gcode/rewrite.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/random_order.h"
 #include "tests/client/gcode/support/read_text.h"
+#include "tests/client/gcode/support/verified.h"
 
 namespace traverse::gcode {
 namespace {
