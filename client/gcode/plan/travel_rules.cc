@@ -250,10 +250,6 @@ std::vector<Point> TravelRules::HiddenBends(Point a, Point b, Feature feature) c
   return {line.begin() + 1, line.end() - 1};
 }
 
-bool TravelRules::Retracts(Point a, Point b, Feature feature) const {
-  return TravelOf(a, b, feature).retracts;
-}
-
 PlannedTravel TravelRules::TravelOf(Point a, Point b, Feature feature) const {
   PlannedTravel travel;
   travel.from = a;

@@ -92,10 +92,7 @@ class TravelRules {
   TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
               const std::vector<Outline>& outlines, const VisibleWalls& walls);
 
-  // Whether the move from `a` to `b`, where a path of `feature` begins, retracts.
-  bool Retracts(Point a, Point b, Feature feature) const;
-
-  // How to write the move about which Retracts decides.
+  // How to write the move from `a` to `b`, where a path of `feature` begins.
   PlannedTravel TravelOf(Point a, Point b, Feature feature) const;
 
   // Whether nobody can see the straight move from `a`, where the head really leaves the path

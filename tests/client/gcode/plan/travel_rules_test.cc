@@ -49,14 +49,11 @@ struct Rules {
         walls(outlines) {
     habit.spares_walls = spares_walls;
   }
-  bool Retracts(Point a, Point b) const {
-    return TravelRules(*file, file->layers[0], habit, outlines, walls)
-        .Retracts(a, b, Feature::kSparseInfill);
-  }
   PlannedTravel TravelOf(Point a, Point b) const {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
         .TravelOf(a, b, Feature::kSparseInfill);
   }
+  bool Retracts(Point a, Point b) const { return TravelOf(a, b).retracts; }
 
   std::shared_ptr<GcodeFile> file;
   RetractionHabit habit;

@@ -34,7 +34,8 @@ class UnseenTravel : public ::testing::Test {
     EXPECT_TRUE(habit.crossing_matters);
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[0]);
     const VisibleWalls walls(outlines);
-    return TravelRules(file, file.layers[0], habit, outlines, walls).Retracts({5, 30}, to, feature);
+    const TravelRules rules(file, file.layers[0], habit, outlines, walls);
+    return rules.TravelOf({5, 30}, to, feature).retracts;
   }
 };
 
