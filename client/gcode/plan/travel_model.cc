@@ -4,11 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/print_meter.h"
+#include "client/gcode/model/part_start.h"
 #include "client/gcode/parallel.h"
 
 namespace traverse::gcode {
@@ -85,11 +85,8 @@ class TravelLearner {
     if ((block.link & kLinkFixed) != 0) return;
     const bool retracts = (block.link & kLinkRetracts) != 0;
     Dynamics dynamics = DynamicsAt(before.state_out);
-    MachineState state = file_.modes[before.mode];
-    state.at = before.last;
-    state.e = before.e_out;
-    state.feed = before.feed_out;
-    Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end, state);
+    Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end,
+                            StartBehind(file_, before).machine);
     PrintMeter all(file_.profile, dynamics, nullptr);
     PrintMeter travel(file_.profile, dynamics, nullptr);
     PrintMeter flowing(file_.profile, dynamics, nullptr);  // without stops
@@ -189,13 +186,9 @@ class TravelPlanner {
 
 double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& model) {
   assert(0 < block && block < file.blocks.size());
-  const Block& before = file.blocks[block - 1];
   TravelPlanner planner(file, block - 1, model);
-  MachineState state = file.modes[before.mode];
-  state.at = before.last;
-  state.e = before.e_out;
-  state.feed = before.feed_out;
-  Interpreter interpreter(file.LinkText(block), 0, state);
+  Interpreter interpreter(file.LinkText(block), 0,
+                          StartBehind(file, file.blocks[block - 1]).machine);
   bool departs = !file.slicer.combs && (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
