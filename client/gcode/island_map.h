@@ -5,8 +5,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_ISLAND_MAP_H_
 #define TRAVERSE_CLIENT_GCODE_ISLAND_MAP_H_
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>

@@ -1,6 +1,5 @@
 #include "client/gcode/island_tree.h"
 
-#include <cmath>
 #include <numeric>
 #include <tuple>
 

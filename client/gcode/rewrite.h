@@ -3,10 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_REWRITE_H_
 #define TRAVERSE_CLIENT_GCODE_REWRITE_H_
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

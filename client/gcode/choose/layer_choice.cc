@@ -1,13 +1,10 @@
 #include "client/gcode/choose/layer_choice.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "absl/types/span.h"
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/fast_forecast.h"
 #include "client/gcode/choose/island_rests.h"

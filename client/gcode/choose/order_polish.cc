@@ -1,7 +1,6 @@
 #include "client/gcode/choose/order_polish.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -8,7 +8,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "client/gcode/hidden/cell_rows.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace traverse::gcode {
 

@@ -4,7 +4,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_HIDDEN_CELL_TILES_H_
 #define TRAVERSE_CLIENT_GCODE_HIDDEN_CELL_TILES_H_
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

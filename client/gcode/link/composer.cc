@@ -1,7 +1,6 @@
 #include "client/gcode/link/composer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "client/gcode/model/part_links.h"

@@ -1,8 +1,5 @@
 #include "client/gcode/link/layer_links.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 

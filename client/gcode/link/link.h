@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_LINK_LINK_H_
 #define TRAVERSE_CLIENT_GCODE_LINK_LINK_H_
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_LINK_PATH_ENDS_H_
 #define TRAVERSE_CLIENT_GCODE_LINK_PATH_ENDS_H_
 
-#include <cstddef>
 #include <vector>
 
 #include "client/gcode/machine/machine_profile.h"

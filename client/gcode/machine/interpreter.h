@@ -7,7 +7,6 @@
 #define TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "client/gcode/machine/print_state.h"

@@ -1,7 +1,6 @@
 #include "client/gcode/machine/named_setting.h"
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 

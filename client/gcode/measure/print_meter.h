@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
 
-#include <string_view>
 #include <vector>
 
 #include "client/gcode/machine/interpreter.h"

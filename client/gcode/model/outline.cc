@@ -1,7 +1,6 @@
 #include "client/gcode/model/outline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <optional>
 

@@ -1,9 +1,6 @@
 #include "client/gcode/model/placed_path.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <string_view>
 
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"

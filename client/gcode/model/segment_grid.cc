@@ -1,7 +1,6 @@
 #include "client/gcode/model/segment_grid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace traverse::gcode {

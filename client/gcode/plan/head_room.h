@@ -7,7 +7,6 @@
 #define TRAVERSE_CLIENT_GCODE_PLAN_HEAD_ROOM_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <vector>
 

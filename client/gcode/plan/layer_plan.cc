@@ -1,7 +1,6 @@
 #include "client/gcode/plan/layer_plan.h"
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>

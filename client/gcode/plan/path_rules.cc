@@ -1,7 +1,6 @@
 #include "client/gcode/plan/path_rules.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 

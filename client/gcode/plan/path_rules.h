@@ -4,7 +4,6 @@
 #define TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"

@@ -4,8 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "absl/strings/str_split.h"
-
 namespace traverse::gcode {
 
 std::optional<Policy> PolicyOfName(std::string_view name) {

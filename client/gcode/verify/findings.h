@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "absl/types/span.h"
 #include "client/gcode/verify/permissions.h"
 
 namespace traverse {

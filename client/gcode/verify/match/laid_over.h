@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAID_OVER_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAID_OVER_H_
 
-#include <cstdint>
 #include <vector>
 
 #include "absl/types/span.h"

@@ -1,7 +1,6 @@
 #include "client/gcode/verify/rules/rest.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <tuple>

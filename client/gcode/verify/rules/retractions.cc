@@ -1,7 +1,6 @@
 // All in all the primes push as much more than was retracted as in the original: differences that
 // are too small for the parts of one link (travel/made_of_parts.cc) add up.
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "absl/strings/str_format.h"

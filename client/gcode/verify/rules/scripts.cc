@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "client/gcode/verify/rules/rules.h"
 

@@ -2,7 +2,6 @@
 // within the print. Their feed rates are those of parts of travel (travel/made_of_parts.cc).
 
 #include <algorithm>
-#include <array>
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"

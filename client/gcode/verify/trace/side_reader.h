@@ -4,9 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
-#include <utility>
 
 #include "client/gcode/verify/sections.h"
 #include "client/gcode/verify/trace/trace.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "client/gcode/verify/trace/clock.h"
 #include "client/gcode/verify/trace/trace.h"
