@@ -81,6 +81,7 @@ struct Pull {
   Decimal pulled = 0;
   bool wipes = false;
   bool firmware = false;
+  bool behind_marks = false;  // or behind other steps
 
   bool any() const { return pulled > 0 || firmware; }
   bool Replaces(const Pull& other) const {
@@ -105,6 +106,7 @@ Pull PullOf(const Link& link) {
       break;
     } else {
       pull = {};
+      pull.behind_marks = true;
     }
   }
   return pull;
@@ -120,8 +122,9 @@ bool StaysWithTravel(const LinkStep& step) {
 std::optional<Link> WithWipeOf(Link form, const Link& own) {
   assert(form.arrival >= 0);
   const Pull pull = PullOf(own);
-  if (!pull.wipes || form.fixed > 0 || pull.firmware != form.firmware ||
-      std::abs(pull.pulled - form.pulled) > kRetractionSlack) {
+  // At marks the wipes of other paths serve as well.
+  if (!pull.wipes || (pull.behind_marks && form.wipes) || form.fixed > 0 ||
+      pull.firmware != form.firmware || std::abs(pull.pulled - form.pulled) > kRetractionSlack) {
     return std::nullopt;
   }
   std::vector<LinkStep> steps = pull.steps;

@@ -119,7 +119,8 @@ bool LeadsAside(const Link& link, size_t i);
 SlotMask SetBeforeMarks(const Link& link);
 
 // `form`, which pulls filament back as `own` first does; nothing if `own` pulls back another amount
-// there, or does not wipe. REQUIRES: form.arrival >= 0.
+// there, or does not wipe, or does so behind marks, and `form` wipes too. REQUIRES: form.arrival >=
+// 0.
 std::optional<Link> WithWipeOf(Link form, const Link& own);
 
 // `link` with its marks, in which filament is first pulled back as in `own`, if one of the two
