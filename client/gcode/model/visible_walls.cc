@@ -123,13 +123,14 @@ bool VisibleWalls::Touched(absl::Span<const Point> travel) const {
 bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const WallSegment& to,
                              double half_mm) const {
   constexpr double kStepMm = 0.25;
+  constexpr double kMostSteps = 10'000;  // farther than any printer moves
   const double away_mm = half_mm + 0.1;
   const Segment piece = SegmentOf(to.a, to.b);
   for (size_t i = 1; i <= leg; ++i) {
     const Point from = line[i - 1];
     const double dx = line[i].x - from.x;
     const double dy = line[i].y - from.y;
-    const double steps = std::ceil(std::hypot(dx, dy) / kStepMm);
+    const double steps = std::min(std::ceil(std::hypot(dx, dy) / kStepMm), kMostSteps);
     for (double step = 0; step <= steps; ++step) {
       const double share = steps > 0 ? step / steps : 0;
       const Point at{from.x + dx * share, from.y + dy * share};

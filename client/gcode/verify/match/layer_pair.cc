@@ -373,12 +373,13 @@ bool LayerPair::TouchesOuterWall(const Travel& travel) const {
 bool LayerPair::WasAway(const Travel& travel, size_t move, bool behind, uint32_t piece) const {
   constexpr double kAwayMm = 0.5;
   constexpr double kStepMm = 0.2;
+  constexpr double kMostSteps = 10'000;  // farther than any printer moves
   const Piece& wall = outer_walls_.pieces()[piece];
   for (size_t i = behind ? travel.moves.size() - 1 : 0;; behind ? --i : ++i) {
     Point a = travel.moves[i].first;
     Point b = travel.moves[i].second;
     if (behind) std::swap(a, b);
-    const double steps = std::ceil(DistanceOf(a, b) / kStepMm);
+    const double steps = std::min(std::ceil(DistanceOf(a, b) / kStepMm), kMostSteps);
     for (double step = 0; step <= steps; ++step) {
       const double t = steps > 0 ? step / steps : 0;
       const Point at{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
