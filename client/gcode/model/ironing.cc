@@ -146,7 +146,9 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
       lines.push_back({points[k], points[k + 1], path});
   }
   if (thin.empty()) return;
-  const double spacing = UsualSpacingMm(file, layer, usual);
+  // Wider than any nozzle: what numbers may say, but nobody looks for that far.
+  constexpr double kMostSpacingMm = 100;
+  const double spacing = std::min(UsualSpacingMm(file, layer, usual), kMostSpacingMm);
   const SegmentGrid grid(std::move(lines));
   size_t looks = kLooksPerLine * grid.segments().size();
   for (const uint32_t path : thin) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/model/loops.h"
 #include "tests/client/gcode/support/read_text.h"
+#include "tests/support/growth.h"
 
 namespace traverse::gcode {
 namespace {
@@ -22,8 +24,8 @@ using ::testing::ElementsAre;
 // A layer of 0.2 mm with a long wall that is 0.4 mm wide, and then skin; paths that part by travel.
 class CuraLayer {
  public:
-  CuraLayer() {
-    Path({{0, 50}, {1000, 50}}, 1);
+  explicit CuraLayer(double wall_share = 1) {
+    Path({{0, 50}, {1000, 50}}, wall_share);
     text_ += ";TYPE:SKIN\n";
   }
 
@@ -104,6 +106,16 @@ TEST(Ironing, OfLinesByThemselvesIsToldByThoseBesideThem) {
 TEST(Ironing, IsNoSkinWhoseLinesAreAlmostAsWideAsWalls) {
   EXPECT_THAT(CuraLayer().Line(0, 0.7).Line(5, 1.3).Line(9, 1).Features(),
               Each(Feature::kSolidInfill));
+}
+
+// A wall of so much filament that lines as thick would be far apart: a number of the file.
+TEST(Ironing, IsLookedForNoFartherThanLinesAreWide) {
+  const auto mark = [](int size) {
+    CuraLayer layer(std::pow(size, 4));
+    for (int line = 0; line < 1400; ++line) layer.Line(20 * line, 0.1);
+    EXPECT_EQ(layer.Features().size(), 1400u);
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(2, mark), traverse::testing::kSlowGrowth);
 }
 
 }  // namespace
