@@ -127,10 +127,9 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
                                        const OptimizeFileOptions& options);
 
 // How long writing and verifying a text of `bytes` bytes may take, where `left` is left for the
-// search and for that: as long as on an idle machine, twice as much more for each of `load` who want
-// a processor beside us, some times as long as reading it took, at most half of `left`, and no less
-// than on an idle machine.
-// Searches end this much before `finish_by`.
+// search and for that: as long as on an idle machine, twice as much more for each of `load` who
+// want a processor beside us, some times as long as reading it took, at most half of `left`, and no
+// less than on an idle machine. Searches end this much before `finish_by`.
 absl::Duration WritingTime(size_t bytes, double load, absl::Duration reading, absl::Duration left);
 
 }  // namespace traverse

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMostHeightMm = 1;
 constexpr double kStepMm = 0.2;
-constexpr double kMostSteps = 100'000;  // farther than any printer moves
 
 // Half the width of the walls of most printers; of thinner ones, as their filament says.
 constexpr double kHalfWidthMm = 0.2;
@@ -46,10 +45,9 @@ class HiddenTravel {
     if (shapes_.above.MeetsOpenWall(from, to, half_mm_)) return false;
     const double length = DistanceOf(from, to);
     const double leaving = shapes_.here.IsNearWall(left, kOnPathMm) ? kLeavingMm - behind_mm : 0;
-    const double steps = std::max(std::ceil(length / kStepMm), 1.0);
-    if (steps > kMostSteps) return false;
-    for (double step = 0; step <= steps; ++step) {
-      const double share = step / steps;
+    const int steps = std::max(static_cast<int>(std::ceil(length / kStepMm)), 1);
+    for (int i = 0; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
       const Point at{from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share};
       if (!HidesPoint(at, share * length < leaving)) return false;
     }
