@@ -16,7 +16,8 @@ void LinkComposer::ComposeBoundary() {
   // without one are left so.
   const bool of_path = left_ && (file_.blocks[boundary].link & kLinkNewLayer) == 0;
   const std::shared_ptr<const Link> read = parts_.LinkTo(boundary);
-  const Link link = of_path ? WithPullOf(*read, *left_) : *read;
+  const std::optional<Link> changed = of_path ? WithPullOf(*read, *left_) : std::nullopt;
+  const Link& link = changed ? *changed : *read;
   const Block& before = file_.blocks[boundary - 1];
   if (link.fixed > 0) {
     link_.Keep({before.end, link.steps[link.fixed - 1].line.next, StartBehind(file_, before),

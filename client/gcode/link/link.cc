@@ -138,10 +138,10 @@ std::optional<Link> WithWipeOf(Link form, const Link& own) {
   return form;
 }
 
-Link WithPullOf(const Link& link, const Link& own) {
+std::optional<Link> WithPullOf(const Link& link, const Link& own) {
   const Pull given = PullOf(link);
   const Pull pull = PullOf(own);
-  if (given.wipes == pull.wipes || !pull.Replaces(given)) return link;
+  if (given.wipes == pull.wipes || !pull.Replaces(given)) return std::nullopt;
   Link out = link;
   out.steps.assign(link.steps.begin(),
                    link.steps.begin() + static_cast<std::ptrdiff_t>(given.begin));

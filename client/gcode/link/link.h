@@ -123,9 +123,9 @@ SlotMask SetBeforeMarks(const Link& link);
 // 0.
 std::optional<Link> WithWipeOf(Link form, const Link& own);
 
-// `link` with its marks, in which filament is first pulled back as in `own`, if one of the two
-// wipes there and the other one does not, and both pull back as much.
-Link WithPullOf(const Link& link, const Link& own);
+// `link` with its marks, in which filament is first pulled back as in `own`; nothing unless one of
+// the two wipes there and the other one does not, and both pull back as much.
+std::optional<Link> WithPullOf(const Link& link, const Link& own);
 
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);
