@@ -30,6 +30,7 @@ enum class MarkKind : uint8_t {
   kObjectBegins,  // what follows is of the object that the line names
   kObjectEnds,    // and no longer
   kNoObject,      // what follows is of none
+  kSays,          // shows something to who stands before the printer
   kStays,         // moves nothing, or leads the head away for a picture and back to where it was
 };
 

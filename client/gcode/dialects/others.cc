@@ -19,6 +19,7 @@ constexpr Mark kFirmwareMarks[] = {
     {"EXCLUDE_OBJECT_END", MarkKind::kObjectEnds, "EXCLUDE_OBJECT"},
     {"M624", MarkKind::kObjectBegins, "M624"},  // Bambu's printers
     {"M625", MarkKind::kNoObject, "M624"},
+    {"SET_DISPLAY_TEXT", MarkKind::kSays},
     {"TIMELAPSE_TAKE_FRAME", MarkKind::kStays},
     {"TIMELAPSE_RENDER", MarkKind::kStays},
     {"SET_PRINT_STATS_INFO", MarkKind::kStays},

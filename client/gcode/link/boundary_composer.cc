@@ -45,7 +45,7 @@ void LinkComposer::ComposeBoundary() {
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
     if (kind == StepKind::kProgress && form_.without_progress) continue;
-    if (kind == StepKind::kLabel || kind == StepKind::kStay) {
+    if (kind == StepKind::kLabel || kind == StepKind::kStay || kind == StepKind::kSays) {
       link_.Raw(labels.LineOf(i));
     } else if (static_cast<int>(i) != link.arrival) {
       ComposeBoundaryStep(link, i);
@@ -58,7 +58,10 @@ void LinkComposer::ComposeBoundary() {
     }
   }
   const uint32_t to = to_.placement().block;
-  if (to != boundary && !IsBoundary(file_.blocks[to])) AddComments();
+  if (to != boundary && !IsBoundary(file_.blocks[to])) {
+    AddSaid();
+    AddComments();
+  }
   Settle(link);
 }
 

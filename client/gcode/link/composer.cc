@@ -110,6 +110,7 @@ void LinkComposer::ComposePlain() {
                               LengthXy(link_.at(), to_.first()), donors_.highest_lift());
   // A scarf seam begins lower than its layer.
   const Decimal height = std::max(to_.first().z, to_.last().z);
+  if (!IsBoundary(to_.block())) AddSaid();
   TravelAs(like, height + rise.lift, rise);
   Arrive(like);
   if (!IsBoundary(to_.block())) AddComments();
@@ -288,6 +289,17 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
 void LinkComposer::Arrive(const Link& like) {
   for (size_t i = static_cast<size_t>(like.arrival + 1); i < like.steps.size(); ++i) {
     Move(like.steps[i], like.z_behind, to_.first().z);
+  }
+}
+
+// Together, and where the nozzle is not yet where it would leave a blob: a beep may take a while.
+void LinkComposer::AddSaid() {
+  const uint32_t block = to_.placement().block;
+  if ((file_.blocks[block].link & kLinkComments) == 0) return;
+  for (const LinkStep& step : parts_.LinkTo(block)->steps) {
+    // What tells a heater the same again is known by what stands before the link alone.
+    const bool says = step.kind == StepKind::kSays || step.kind == StepKind::kStay;
+    if (says) link_.Raw(step.line.Raw(file_.text));
   }
 }
 

@@ -70,6 +70,7 @@ class LinkComposer {
   std::vector<Position> BendsToNext() const;
   void TravelAs(const Link& like, Decimal top, const Link& rise);
   void Arrive(const Link& like);
+  void AddSaid();
   void AddComments();
   void Settle(const Link& like);
 

@@ -46,7 +46,7 @@ LabelLines LabelLinesOf(const GcodeFile& file, const Link& link) {
   for (size_t i = 0; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
     if (kind == StepKind::kBlank || kind == StepKind::kComment || kind == StepKind::kSlot) continue;
-    if (kind == StepKind::kStay) {
+    if (kind == StepKind::kStay || kind == StepKind::kSays) {
       (at_begin ? lines.begins : stays).push_back(i);
       continue;
     }
@@ -113,8 +113,8 @@ bool SaysLabelsOnly(const GcodeFile& file, uint32_t block) {
   const Link link = ReadLink(file, block);
   return link.fixed == 0 &&
          std::none_of(link.steps.begin(), link.steps.end(), [](const LinkStep& step) {
-           return step.kind == StepKind::kStay || step.kind == StepKind::kComment ||
-                  step.kind == StepKind::kLayerMark;
+           return step.kind == StepKind::kStay || step.kind == StepKind::kSays ||
+                  step.kind == StepKind::kComment || step.kind == StepKind::kLayerMark;
          });
 }
 

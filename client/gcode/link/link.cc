@@ -70,7 +70,8 @@ bool Primes(const LinkStep& step) {
 
 bool SaysNothing(const LinkStep& step) {
   return step.kind == StepKind::kBlank || step.kind == StepKind::kComment ||
-         step.kind == StepKind::kSlot || step.kind == StepKind::kProgress;
+         step.kind == StepKind::kSlot || step.kind == StepKind::kProgress ||
+         step.kind == StepKind::kSays;
 }
 
 // How a link first pulls filament back, before any travel and whatever mark stands before that.

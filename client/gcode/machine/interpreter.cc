@@ -25,6 +25,8 @@ StepKind KindOfMark(std::string_view line) {
       return StepKind::kLayerMark;
     case MarkKind::kStays:
       return StepKind::kStay;
+    case MarkKind::kSays:
+      return StepKind::kSays;
     default:
       return LabelOf(line).kind != LabelKind::kNone ? StepKind::kLabel : StepKind::kUnknown;
   }
@@ -48,6 +50,8 @@ StepKind KindOfText(std::string_view line, SlotMask& slots) {
 bool OnlyTells(int number) {
   return number == 971 || number == 9711 || number == 991 || number == 1002 || number == 1004;
 }
+
+bool WaitsForHeat(const Command& command) { return command.Is('M', 109) || command.Is('M', 190); }
 
 // 30 m, or half a mile of inches: no printer, and beyond what the service takes.
 bool Beyond(Decimal coordinate) {
@@ -110,6 +114,8 @@ bool Interpreter::Next(Step& step) {
                      step.kind == StepKind::kFirmwareUnretract;
       break;
   }
+  const bool may_heat = step.kind == StepKind::kUnknown || step.kind == StepKind::kModeChange;
+  if (may_heat && !WaitsForHeat(step.command)) targets_ = {};
   return true;
 }
 
@@ -153,7 +159,7 @@ void Interpreter::FollowG(Step& step) {
     case 19:
       // Slicers write G17 before each spiral lift; if it changes nothing, it is part of the lift.
       step.kind = SwitchMode(state_.plane_xy, step.command.number == 17);
-      if (step.kind == StepKind::kStay) step.kind = StepKind::kPlane;
+      if (step.kind == StepKind::kSays) step.kind = StepKind::kPlane;
       return;
     case 20:
     case 21:
@@ -178,7 +184,23 @@ void Interpreter::FollowG(Step& step) {
 StepKind Interpreter::SwitchMode(bool& mode, bool value) {
   const bool changed = mode != value;
   mode = value;
-  return changed ? StepKind::kModeChange : StepKind::kStay;
+  return changed ? StepKind::kModeChange : StepKind::kSays;
+}
+
+// One that is told the same again goes on as it did.
+void Interpreter::FollowHeat(Step& step) {
+  Command& c = step.command;
+  constexpr uint32_t kOfHeat = Command::Bit('S') | Command::Bit('T');
+  std::optional<Target>& known = targets_[c.Is('M', 140) || c.Is('M', 190) ? 1 : 0];
+  std::optional<Target> target;
+  if (ReadWords(c) && c.Has('S') && (c.words & ~kOfHeat) == 0) {
+    const auto tool = static_cast<int>(c.Has('T') ? c.Value('T') / kDecimalOne : state_.tool);
+    target = Target{tool, c.Value('S')};
+  }
+  step.kind = WaitsForHeat(c)             ? StepKind::kUnknown
+              : target && target == known ? StepKind::kSays
+                                          : StepKind::kStay;
+  known = target;
 }
 
 // The head stays where it is, and so does the register: from here on words use another unit.
@@ -202,18 +224,26 @@ void Interpreter::FollowM(Step& step) {
       step.kind = SwitchMode(state_.relative_e, step.command.number == 83);
       if (next_ <= lifts_until_) step.kind = StepKind::kRelative;
       return;
-    case 74:  // mass printed so far
     case 104:
-    case 105:
+    case 109:
     case 140:
+    case 190:
+      return FollowHeat(step);
+    case 74:   // mass printed so far
     case 142:  // temperature of the heat break
     case 155:
     case 591:  // watch over the filament
       step.kind = StepKind::kStay;
       return;
+    case 105:  // asks for temperatures
+    case 300:  // beeps
+      step.kind = StepKind::kSays;
+      return;
     case 117:
-    case 118:
-      step.kind = IsProgressMessage(step.command.rest) ? StepKind::kProgress : StepKind::kStay;
+    case 118:  // to the host, which may act on it
+      step.kind = IsProgressMessage(step.command.rest) ? StepKind::kProgress
+                  : step.command.number == 117         ? StepKind::kSays
+                                                       : StepKind::kStay;
       return;
     case 400:  // waits for the moves before it, and does nothing else
       step.kind = TrimBlanks(step.command.rest).empty() ? KindOfWait() : StepKind::kUnknown;

@@ -6,7 +6,9 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "client/gcode/machine/print_state.h"
@@ -61,7 +63,8 @@ enum class StepKind : uint8_t {
   kSlot,       // sets slots of the print state
   kWipeMark,   // ;WIPE_START, ;WIPE_END
   kProgress,   // M73 and others (progress_line.h): has meaning only in the file's order
-  kStay,       // known, and harmless where it is: M104, M140, M105, G90 in absolute mode
+  kStay,       // known, and harmless where it is: M104 and M140 to another temperature, M118
+  kSays,       // a message, a beep, or what is in force already: goes with the path behind it
   kPlane,      // G17 in the XY plane: goes with the lift behind it
   kLabel,      // begin or end of an object
   kLayerMark,  // ;LAYER_CHANGE, ;LAYER:7
@@ -123,6 +126,7 @@ class Interpreter {
   // `still`: the head does not move in XY.
   void FollowFilament(Decimal filament, bool still);
   static StepKind SwitchMode(bool& mode, bool value);
+  void FollowHeat(Step& step);
   // Lexes the line at `next`, which moves behind it; false at the end of the text.
   bool LexAhead(Offset& next, Command& command) const;
   // The end of the lines that lift relatively, G91, moves of Z, G90, if such begin at the line
@@ -142,6 +146,15 @@ class Interpreter {
   Offset condition_until_ = 0;  // the end of the condition that was found last
   bool behind_pull_ = false;    // the command before this one, but for waiting, was such a move
   MachineState state_;
+
+  // What the nozzle and the bed were last told; nothing behind lines that may have told them.
+  struct Target {
+    int tool = 0;
+    Decimal degrees = 0;
+
+    friend bool operator==(const Target&, const Target&) = default;
+  };
+  std::array<std::optional<Target>, 2> targets_;
 };
 
 }  // namespace traverse::gcode

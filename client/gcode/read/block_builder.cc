@@ -27,6 +27,7 @@ bool IsQuiet(StepKind kind) {
     case StepKind::kSlot:
     case StepKind::kWipeMark:
     case StepKind::kProgress:
+    case StepKind::kSays:
     case StepKind::kFeed:
       return true;
     default:
@@ -79,6 +80,7 @@ uint16_t LinkFlagsOf(StepKind kind) {
     case StepKind::kLayerMark:
       return kLinkSplits | kLinkNewLayer;
     case StepKind::kComment:
+    case StepKind::kSays:
       return kLinkComments;
     case StepKind::kLift:
       return kLinkLifts;
@@ -127,7 +129,9 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
   }
   if (where_ == Where::kBody && (IsQuiet(step.kind) || IsSpeck(step))) {
     if (IsSpeck(step)) pending_ |= kBlockCommand;
-    if (step.kind == StepKind::kComment) pending_ |= kBlockComments;
+    if (step.kind == StepKind::kComment || step.kind == StepKind::kSays) {
+      pending_ |= kBlockComments;
+    }
     if (step.kind == StepKind::kProgress) pending_ |= kBlockProgress;
   } else if (where_ != Where::kHead) {
     where_ = Where::kLink;

@@ -71,6 +71,7 @@ void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
   if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
   const bool ends = line.travels || line.primes || line.role == LineRole::kDeposit ||
                     line.role == LineRole::kFence || line.role == LineRole::kFixed ||
+                    (line.role == LineRole::kComment && line.command != 0) ||
                     NamesFeature(line.text);
   in_header_ = mark || (in_header_ && !ends);
 }

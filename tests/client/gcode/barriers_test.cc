@@ -51,7 +51,7 @@ TEST(DescribeBarriers, SayWhatHoldsAndWhatWouldFree) {
               HasSubstr("without it in the slicer's `layer_gcode`"));
   EXPECT_THAT(BarriersOf(Lines("M400\n") + "; layer_gcode = M117\n"),
               HasSubstr("custom G-code has none"));
-  EXPECT_THAT(BarriersOf(Lines("M117 here\n")), HasSubstr("`M117 here` in part.gcode:14"));
+  EXPECT_THAT(BarriersOf(Lines("M118 here\n")), HasSubstr("`M118 here` in part.gcode:14"));
   EXPECT_THAT(BarriersOf(Lines("T1\n")), HasSubstr("change of tool"));
 }
 

@@ -146,6 +146,9 @@ void VerifyMachine::Do(VerifyLine& line) {
     DoKlipper(line);
     line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
   }
+  if (line.role == LineRole::kFixed && (letter != 'M' || (number != 109 && number != 190))) {
+    nozzle_ = bed_ = 0;
+  }
   line.sets = line.command != 0 && line.role == LineRole::kNothing;
   line.sets_back = settings_.sets_back();
   line.sets_fan = settings_.sets_fan();
@@ -174,7 +177,9 @@ void VerifyMachine::DoComment(VerifyLine& line) {
 }
 
 void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
-  if (!InLift()) Fence(line, mode == value ? LineRole::kFence : LineRole::kFixed);
+  // What holds before the print begins is not known.
+  const LineRole again = prints_ ? LineRole::kComment : LineRole::kFence;
+  if (!InLift()) Fence(line, mode == value ? again : LineRole::kFixed);
   mode = value;
 }
 
@@ -421,6 +426,7 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
     add(static_cast<uint64_t>(words.ValueOr('R', 0)));
   }
   if (number >= 2) add(static_cast<uint64_t>(words.ValueOr('P', 0)));
+  prints_ = true;
   line.role = LineRole::kDeposit;
   line.digest = Mix(0, sum);
   line.z = at_[2];
@@ -431,18 +437,34 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
   if (number == 73 || number == 532 || (message && MessageTellsProgress(line.text))) {
     return Fence(line, LineRole::kProgress);
   }
+  if (number == 117 || number == 300 || number == 105) return Fence(line, LineRole::kComment);
+  if (number == 104 || number == 109 || number == 140 || number == 190) return Heat(number, line);
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
   if (number == 400 && CommandWords(WordsOf(line.text)).set == 0) return Wait(0, line);
   if (number == 622) in_condition_ = ConditionOnlyTells();
   const bool conditional = number == 622 || number == 623;
   if (conditional && in_condition_) return Fence(line, LineRole::kFence);
-  for (const int known :
-       {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625, 971, 991, 1002, 1004, 9711}) {
+  for (const int known : {74, 118, 142, 155, 486, 591, 624, 625, 971, 991, 1002, 1004, 9711}) {
     if (number != known) continue;
     line.label = number == 486 || number == 624 || number == 625;
     return Fence(line, LineRole::kFence);
   }
   if (!settings_.SetByM(number, CommandWords(WordsOf(line.text)))) Fence(line, LineRole::kFixed);
+}
+
+// What waits for a temperature is fixed. One that was told before changes nothing.
+void VerifyMachine::Heat(int number, VerifyLine& line) {
+  const CommandWords words(WordsOf(line.text));
+  uint64_t told = 0;
+  if (words.OnlyFrom("ST") && words.Has('S')) {
+    const uint64_t heater = words.Has('T') ? static_cast<uint64_t>(words['T']) + 1 : Mix(1, tool_);
+    told = Mix(heater, static_cast<uint64_t>(words['S'])) | 1;
+  }
+  uint64_t& known = number < 140 ? nozzle_ : bed_;
+  const bool waits = number == 109 || number == 190;
+  const bool again = told != 0 && std::exchange(known, told) == told;
+  if (told == 0) known = 0;
+  Fence(line, waits ? LineRole::kFixed : again ? LineRole::kComment : LineRole::kFence);
 }
 
 void VerifyMachine::DoKlipper(VerifyLine& line) {
@@ -451,6 +473,7 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
   if (Begins(text, "SET_DISPLAY_TEXT ") && MessageTellsProgress(text)) {
     return Fence(line, LineRole::kProgress);
   }
+  if (Begins(text, "SET_DISPLAY_TEXT ")) return Fence(line, LineRole::kComment);
   if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
     line.label = true;
     return Fence(line, LineRole::kFence);

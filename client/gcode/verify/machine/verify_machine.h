@@ -22,7 +22,7 @@ namespace traverse::gcode {
 enum class LineRole : uint8_t {
   kNothing,   // travel, retraction, a setter of state, a blank line: seen by what it leads to
   kDeposit,   // an extruding move
-  kComment,   // has to be there, in its section
+  kComment,   // has to be there, in its section: a command that only says something, too
   kProgress,  // tells how far the print is: the same
   kFence,     // has to be there, in the order of the file: a section ends with it
   kFixed,     // a fence that is not known: the head has to be in the same place as well
@@ -129,6 +129,7 @@ class VerifyMachine {
   void Wait(Micro milliseconds, VerifyLine& line);
   bool InLift() const { return number_ <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
+  void Heat(int number, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
   std::string_view rest_;
@@ -153,6 +154,10 @@ class VerifyMachine {
   bool inches_ = false;
   bool plane_xy_ = true;
   uint64_t tool_ = 0;
+  bool prints_ = false;  // has deposited something
+  // Digests of what the nozzle and the bed were told last; 0 where it may have been something else.
+  uint64_t nozzle_ = 0;
+  uint64_t bed_ = 0;
   PrintSettings settings_;
   Motion motion_;
 };

@@ -174,7 +174,7 @@ TEST(MovedObjects, StayWherePrintedTwice) {
 }
 
 TEST(MovedObjects, DoNotPassATemperatureOrAnUnknownCommand) {
-  for (const std::string between : {"M104 S210\n", "WIPE_NOZZLE\n", "M400\n", "T1\n"}) {
+  for (const std::string between : {"M104 S210\nM104 S215\n", "WIPE_NOZZLE\n", "M400\n", "T1\n"}) {
     PillarPrint print;
     print.between = between;
     EXPECT_EQ(Optimised(Text(print, Klipper())).layers_changed, 0) << between;
@@ -240,7 +240,7 @@ TEST(VerifyMovedObjects, CatchesWhatIsPlanted) {
 
 TEST(VerifyMovedObjects, NothingPassesATemperature) {
   PillarPrint print;
-  print.between = "M104 S210\n";
+  print.between = "M104 S210\nM104 S215\n";
   const std::string text = Text(print, Klipper());
   EXPECT_NE(Broken(text, WithLayer(text, 3, {1, 0, 2, 3})), "");
 }

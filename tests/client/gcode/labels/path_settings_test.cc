@@ -126,6 +126,55 @@ TEST(PathSettings, OfTwoKindsGoWithTheirPathTogether) {
   }
 }
 
+// Lines of a host or of a slicer's custom G-code, before each path.
+TEST(PathSettings, WhatOnlySaysSomethingHoldsNothing) {
+  const std::vector<std::vector<std::string>> all = {
+      {"G90\n", "G21\n"},
+      {"M83\n", "G90\nM83\n"},
+      {"M104 S215\n", "M104 S215\n"},
+      {"M109 S215\n", "M104 S215\nM140 S60\nM140 S60\n"},  // the first ones in the head
+      {"M117 even\n", "M117 odd\n"},
+      {"SET_DISPLAY_TEXT MSG=even\n", "SET_DISPLAY_TEXT MSG=odd\n"},
+      {"M300 S440 P100\n", "M105\n"},
+  };
+  for (const std::vector<std::string>& lines : all) {
+    std::string text = Lines(lines);
+    // What waits for heat does so in the head alone.
+    const size_t head = text.find(";LAYER_CHANGE");
+    text = text.substr(0, head) + absl::StrReplaceAll(text.substr(head), {{"M109", "M104"}});
+    const GcodeRewrite rewrite = Up(text);
+    EXPECT_EQ(rewrite.layers_changed, 4) << lines[1] << rewrite.unproven;
+    EXPECT_LT(rewrite.after.travel_mm, rewrite.before.travel_mm) << lines[1];
+    // Each is still there.
+    const size_t at = rewrite.text.rfind(lines[1]);
+    ASSERT_NE(at, std::string::npos);
+    std::string without = rewrite.text;
+    without.erase(at, lines[1].size());
+    EXPECT_NE(VerifyGcode(text, "a", without, "b").message(), "") << lines[1];
+  }
+}
+
+// It is told before the path before which it stands, and before the travel there.
+TEST(PathSettings, WhatIsSaidOfAPathGoesWithIt) {
+  const GcodeRewrite rewrite = Up(Lines({"M117 even\n", "M300 P9\n"}));
+
+  EXPECT_NE(rewrite.text.find("M117 even\nG1 X0 Y10 F9000\n"), std::string::npos);
+  EXPECT_NE(rewrite.text.find("M300 P9\nG1 X0 Y30 F9000\n"), std::string::npos);
+}
+
+TEST(PathSettings, WhatChangesAHeaterOrTellsTheHostHoldsItsPlace) {
+  const std::vector<std::vector<std::string>> all = {
+      {"M104 S215\n", "M104 S210\n"},
+      {"M104 T0 S215\n", "M104 T1 S215\n"},
+      {"M104\n", "M104\n"},
+      {"M104 S215\nM400\n", "M104 S215\n"},  // what is not known may have changed it
+      {"M118 //action:pause\n", "M118 //action:pause\n"},
+  };
+  for (const std::vector<std::string>& lines : all) {
+    EXPECT_EQ(Up(Lines(lines)).layers_changed, 0) << lines[1];
+  }
+}
+
 // One that firmware retracts by, and one that sets nothing, hold what stands beside them.
 TEST(PathSettings, WithOtherWordsTheyAreOtherCommands) {
   for (const char* line :

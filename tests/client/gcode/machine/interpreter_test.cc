@@ -117,9 +117,10 @@ TEST(Interpreter, WhatSaysHowFarThePrintIs) {
         ";REMAINING_TIME: 60", "; layer num/total_layer_count: 3/20", "; progress: 33"}) {
     EXPECT_EQ(LastKind(line), StepKind::kProgress) << line;
   }
-  for (const char* line : {"M117 Hello", "M117 Object 3", "M118 Part of the left side"}) {
-    EXPECT_EQ(LastKind(line), StepKind::kStay) << line;
+  for (const char* line : {"M117 Hello", "M117 Object 3", "SET_DISPLAY_TEXT MSG=Hello"}) {
+    EXPECT_EQ(LastKind(line), StepKind::kSays) << line;
   }
+  EXPECT_EQ(LastKind("M118 Part of the left side"), StepKind::kStay);
   for (const char* line : {"; elapsed", ";TIME:5360", "; 33% infill", "; remaining: none"}) {
     EXPECT_EQ(LastKind(line), StepKind::kComment) << line;
   }
@@ -134,14 +135,27 @@ TEST(Interpreter, WhatItDoesNotKnowIsUnknown) {
 }
 
 TEST(Interpreter, ModesMatterOnlyIfTheyChangeSomething) {
-  EXPECT_EQ(LastKind("G90"), StepKind::kStay);
+  EXPECT_EQ(LastKind("G90"), StepKind::kSays);
   EXPECT_EQ(LastKind("G91"), StepKind::kModeChange);
-  EXPECT_EQ(LastKind("G21"), StepKind::kStay);
+  EXPECT_EQ(LastKind("G21"), StepKind::kSays);
   EXPECT_EQ(LastKind("G20"), StepKind::kModeChange);
-  EXPECT_EQ(LastKind("M83\nM83"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M83\nM83"), StepKind::kSays);
   EXPECT_EQ(LastKind("T1"), StepKind::kModeChange);
   EXPECT_EQ(LastKind("G91\nG1 X5 E1"), StepKind::kUnknown);
   EXPECT_EQ(LastKind("G1 X5 R2"), StepKind::kUnknown) << "from a stored point, to some machines";
+}
+
+TEST(Interpreter, HeatersMatterOnlyIfTheyAreToldSomethingElse) {
+  EXPECT_EQ(LastKind("M104 S215"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M104 S215\nM104 S215"), StepKind::kSays);
+  EXPECT_EQ(LastKind("M109 S215\nM104 S215"), StepKind::kSays);
+  EXPECT_EQ(LastKind("M104 S215\nM109 S215"), StepKind::kUnknown) << "waits";
+  EXPECT_EQ(LastKind("M104 S215\nM140 S215"), StepKind::kStay) << "the bed";
+  EXPECT_EQ(LastKind("M104 S215\nM104 S210\nM104 S215"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M104 S215\nM104 S215 T1"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M104 S215\nT1\nM104 S215"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M104 S215\nPRINT_START\nM104 S215"), StepKind::kStay);
+  EXPECT_EQ(LastKind("M104 S215 B9\nM104 S215 B9"), StepKind::kStay);
 }
 
 TEST(Interpreter, ArcsNeedACenter) {

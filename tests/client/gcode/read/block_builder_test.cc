@@ -110,7 +110,7 @@ TEST(BlockBuilder, AHeadThatWasLostIsFoundWhereAllAxesAreStated) {
 }
 
 TEST(BlockBuilder, KnownLinesSplitWithoutFixing) {
-  for (const char* line : {"M104 S200", "M117 hello", "; printing object a id:0 copy 0", "M486 S1",
+  for (const char* line : {"M104 S200", "M118 hello", "; printing object a id:0 copy 0", "M486 S1",
                            "EXCLUDE_OBJECT_START NAME=a", ";MESH:a.stl"}) {
     const auto file = Read(std::string("M83\nG1 X1 E1\nG0 X5\n") + line + "\nG1 X6 E1\n");
     EXPECT_EQ(file->blocks[1].link & (kLinkFixed | kLinkSplits), kLinkSplits) << line;

@@ -53,6 +53,30 @@ TEST(SamePrint, CommentsBetweenPathsThatStayKeepTheirOrder) {
   EXPECT_EQ(Broken(a, kHead + "; there\n" + kOther + "; here\n" + kOne), "");
 }
 
+// Whatever it says, it belongs to what is printed behind it.
+TEST(SamePrint, CommandsThatChangeNothingStandWhereCommentsMay) {
+  for (const char* line : {"M117 here\n", "M300 S440 P100\n", "G90\n", "M83\n", "M140 S60\n",
+                           "M104 S215\n", "SET_DISPLAY_TEXT MSG=here\n"}) {
+    const std::string head = kHead + "M104 S215\nM140 S60\n" + kSquare;
+    const std::string a = head + line + kOne + kOther;
+    EXPECT_EQ(Broken(a, head + kOther + line + kOne), "") << line;
+    EXPECT_EQ(Broken(a, head + kOne + line + kOther), "same_print")
+        << "of the other path: " << line;
+    EXPECT_EQ(Broken(a, head + kOne + kOther), "same_print") << line;
+  }
+}
+
+TEST(SamePrint, CommandsThatMayChangeSomethingStay) {
+  for (const char* line : {"M104 S200\n", "M104 S215 T1\n", "M118 here\n", "M155 S1\n"}) {
+    const std::string head = kHead + "M104 S215\n" + kSquare;
+    EXPECT_EQ(Broken(head + line + kOne + kOther, head + kOther + line + kOne), "same_print")
+        << line;
+  }
+  // A script may be what states it.
+  const std::string first = "G1 Z9 F9000\n";
+  EXPECT_EQ(Broken("G90\n" + first + kHead + kOne, first + "G90\n" + kHead + kOne), "same_print");
+}
+
 // `; stop printing` may be a line that a plugin of the printer looks for.
 TEST(SamePrint, CommentsStayBetweenThePathsBetweenWhichTheyStand) {
   const std::string a = kHead + kOne + "; stop printing\n" + kOther;
