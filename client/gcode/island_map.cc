@@ -14,11 +14,22 @@ constexpr double kSamePointMm = 0.25;
 // Pairs of points that are looked at in a layer.
 constexpr uint64_t kMostPairs = 4'000'000;
 
+// Narrows the shares of a line between which it lies on the plate, along one axis.
+void Narrow(double from, double length, double& begin, double& end) {
+  if (length == 0) {
+    if (std::abs(from) > kFarthestMm) end = -1;
+    return;
+  }
+  const double low = (-kFarthestMm - from) / length;
+  const double high = (kFarthestMm - from) / length;
+  begin = std::max(begin, std::min(low, high));
+  end = std::min(end, std::max(low, high));
+}
+
 // The cell of `size` mm at a point, in mm.
 uint64_t CellOf(double x, double y, double size) {
   const auto index = [size](double value) {
-    const double cell = std::clamp(std::floor(value / size), -kFarCells, kFarCells);
-    return static_cast<uint32_t>(static_cast<int32_t>(cell));
+    return static_cast<uint32_t>(static_cast<int32_t>(std::floor(value / size)));
   };
   return uint64_t{index(x)} << 32 | index(y);
 }
@@ -31,10 +42,20 @@ uint64_t Beside(uint64_t cell, uint32_t columns, uint32_t rows) {
 }  // namespace
 
 void IslandMap::AddLine(double from_x, double from_y, double to_x, double to_y, uint32_t island) {
-  const double dx = to_x - from_x;
-  const double dy = to_y - from_y;
-  const double steps =
-      std::clamp(std::ceil(std::hypot(dx, dy) / kPointsApartMm), 1.0, kFarCells / kPointsApartMm);
+  double dx = to_x - from_x;
+  double dy = to_y - from_y;
+  double begin = 0;
+  double end = 1;
+  Narrow(from_x, dx, begin, end);
+  Narrow(from_y, dy, begin, end);
+  if (!(begin <= end)) return;
+  from_x += dx * begin;
+  from_y += dy * begin;
+  dx *= end - begin;
+  dy *= end - begin;
+  const double steps = std::max(std::ceil(std::hypot(dx, dy) / kPointsApartMm), 1.0);
+  looked_at_ += steps;
+  full_ = full_ || looked_at_ > kMostPointsOfLayer;
   for (double step = 0; step <= steps && !full_; ++step) {
     Add({from_x + dx * step / steps, from_y + dy * step / steps, island});
   }

@@ -14,12 +14,14 @@
 
 namespace traverse::gcode {
 
-// No plate is larger, in mm on either side of the origin. Beyond it there is one cell.
-inline constexpr double kFarCells = 4000;
+// No plate is larger, in mm on either side of the origin; of what lies beyond nothing is known.
+inline constexpr double kFarthestMm = 4000;
 
 // No layer has more cells with something in them, and no print more that are remembered; of what
-// lies in further ones nothing is known.
+// lies in further ones nothing is known. Nor has a layer many more points in its cells, unless it
+// is printed in the same places again and again.
 inline constexpr size_t kMostCellsOfLayer = 1 << 18;
+inline constexpr double kMostPointsOfLayer = 16 * kMostCellsOfLayer;
 inline constexpr size_t kMostCellsOfPrint = 1 << 19;
 
 // A cell of 1 mm, and an island that lies in it.
@@ -33,8 +35,8 @@ class IslandMap {
   // What comes next is left out.
   bool full() const { return full_; }
 
-  // Adds a straight line of island `island`, along which points half a mm apart are looked at: no
-  // cell is missed but for corners. In mm.
+  // Adds a straight line of island `island`, as far as it lies on the plate. Points half a mm apart
+  // are looked at: no cell is missed but for corners. In mm.
   void AddLine(double from_x, double from_y, double to_x, double to_y, uint32_t island);
 
   // Each once, ascending.
@@ -62,6 +64,7 @@ class IslandMap {
   std::vector<IslandCell> cells_;
   std::vector<PrintedPoint> points_;  // unless there is one island
   size_t room_ = kLeastRoom;
+  double looked_at_ = 0;
   bool full_ = false;
 };
 

@@ -94,5 +94,26 @@ TEST(IslandMap, CrowdsOfPointsCountForThemselves) {
   EXPECT_EQ(map.TakeTree().size(), 2u);
 }
 
+// Of the chord of a huge arc as much as of any other line.
+TEST(IslandMap, FarLinesAreLookedAtWhereThePlateIs) {
+  IslandMap map(1);
+  map.AddLine(-1e6, 5.5, 1e6, 5.5, 0);
+  map.AddLine(1e6, -1e6, 1e6, 1e6, 0);
+  map.AddLine(4001, 4001, 9000, 9000, 0);
+
+  const std::vector<IslandCell> cells = map.TakeCells();
+
+  EXPECT_NEAR(static_cast<double>(cells.size()), 2 * kFarthestMm, 1);
+  for (const IslandCell& cell : cells) EXPECT_EQ(static_cast<uint32_t>(cell.first), 5u);
+}
+
+TEST(IslandMap, LinesInOnePlaceFillIt) {
+  IslandMap map(1);
+  int lines = 0;
+  for (; !map.full() && lines < 1000; ++lines) map.AddLine(-4000, 5.5, 4000, 5.5, 0);
+
+  EXPECT_NEAR(lines, kMostPointsOfLayer / 16000, 1);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
