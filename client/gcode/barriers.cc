@@ -261,14 +261,16 @@ std::string OfOne(std::string_view holds) {
 // Who writes the line at `at`, and may leave it out.
 std::string WithoutLine(const GcodeFile& file, Offset at) {
   const std::string_view line = TrimBlanks(LineAt(file.text, at).Text(file.text));
-  const std::string_view command = line.substr(0, line.find_first_of(" \t;"));
-  const auto setting = SettingThatAdds(file.text, command);
-  if (!setting) return "without it, in custom G-code or a script, they would be free";
-  if (setting->empty()) {
+  const auto settings = SettingsThatAdd(file.text, line);
+  if (!settings) return "without it, in custom G-code or a script, they would be free";
+  if (settings->empty()) {
     return "the slicer's custom G-code has none, so no setting of that frees them";
   }
-  return absl::StrCat("without it in the slicer's `", std::string(*setting),
-                      "` they would be free");
+  std::string names;
+  for (const std::string_view setting : *settings) {
+    absl::StrAppend(&names, names.empty() ? "`" : " or `", std::string(setting), "`");
+  }
+  return absl::StrCat("without it in the slicer's ", names, " they would be free");
 }
 
 std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tallies& tallies) {

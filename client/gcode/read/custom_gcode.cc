@@ -29,9 +29,13 @@ bool IsOfStartOrEnd(std::string_view setting) {
 
 }  // namespace
 
-std::optional<std::string_view> SettingThatAdds(std::string_view text, std::string_view command) {
+std::optional<std::vector<std::string_view>> SettingsThatAdd(std::string_view text,
+                                                             std::string_view line_added) {
+  const std::string_view command = line_added.substr(0, line_added.find_first_of(" \t;"));
   if (command.empty()) return std::nullopt;
   constexpr std::string_view kEnd = "_gcode = ";
+  std::vector<std::string_view> with_line;
+  std::vector<std::string_view> with_command;
   bool stated = false;
   for (Offset next = 0; next < text.size();) {
     const Line line = LineAt(text, next);
@@ -43,9 +47,12 @@ std::optional<std::string_view> SettingThatAdds(std::string_view text, std::stri
     const std::string_view name = TrimBlanks(comment.substr(1, at + kEnd.find(' ') - 1));
     if (!std::all_of(name.begin(), name.end(), IsOfWord)) continue;
     stated = true;
-    if (!IsOfStartOrEnd(name) && HasCommand(comment.substr(at + kEnd.size()), command)) return name;
+    const std::string_view value = comment.substr(at + kEnd.size());
+    if (IsOfStartOrEnd(name) || !HasCommand(value, command)) continue;
+    (HasCommand(value, line_added) ? with_line : with_command).push_back(name);
   }
-  return stated ? std::optional<std::string_view>("") : std::nullopt;
+  if (!stated) return std::nullopt;
+  return with_line.empty() ? with_command : with_line;
 }
 
 }  // namespace traverse::gcode

@@ -7,13 +7,15 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace traverse::gcode {
 
-// The first setting that adds lines between paths, not at the start or end of the print, and has
-// `command`, such as "M400"; empty if none has it; nothing if `text` states no custom G-code, or
-// the command is none, as of a comment.
-std::optional<std::string_view> SettingThatAdds(std::string_view text, std::string_view command);
+// The settings that add lines between paths, not at the start or end of the print, and have `line`,
+// such as "M400 ; wait"; if none has all of it, those that have its command. Nothing if `text`
+// states no custom G-code, or the line is a comment.
+std::optional<std::vector<std::string_view>> SettingsThatAdd(std::string_view text,
+                                                             std::string_view line);
 
 }  // namespace traverse::gcode
 

@@ -51,6 +51,8 @@ TEST(DescribeBarriers, SayWhatHoldsAndWhatWouldFree) {
               HasSubstr("without it in the slicer's `layer_gcode`"));
   EXPECT_THAT(BarriersOf(Lines("M400\n") + "; layer_gcode = M117\n"),
               HasSubstr("custom G-code has none"));
+  EXPECT_THAT(BarriersOf(Lines("M400\n") + "; a_gcode = M400\n; b_gcode = M400\n"),
+              HasSubstr("without it in the slicer's `a_gcode` or `b_gcode`"));
   EXPECT_THAT(BarriersOf(Lines("M118 here\n")), HasSubstr("`M118 here` in part.gcode:14"));
   EXPECT_THAT(BarriersOf(Lines("T1\n")), HasSubstr("change of tool"));
 }
