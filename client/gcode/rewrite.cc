@@ -143,11 +143,16 @@ VerifyOptions AllRules(const GcodeFile& file, const RewriteOptions& options) {
   return verify;
 }
 
-// What is not proven, and where: "islands rest as long as in the original, ... (part.gcode:118)".
+// What is not proven, where, and what would do without: "islands rest as long as in the original,
+// ... (part.gcode:118); --policy=free asks for no such rest".
 std::string Reason(const GcodeFile& file, const VerifyBreak& found) {
-  const std::string text(VerifyRuleText(found.rule));
-  if (found.original_line == 0) return text;
-  return absl::StrFormat("%s (%s:%d)", text, file.name, found.original_line);
+  std::string text(VerifyRuleText(found.rule));
+  if (found.original_line != 0) {
+    absl::StrAppend(&text, " (", file.name, ":", found.original_line, ")");
+  }
+  return absl::StrCat(text, found.rule == VerifyRule::kRest
+                                ? "; --policy=free asks for no such rest"
+                                : "; no flag or setting is known that does without");
 }
 
 size_t LinesIn(std::string_view text) {
@@ -296,7 +301,8 @@ class Rewriter {
       rewrite.layers_unproven = rewrite.layers_changed;
       rewrite.unproven =
           absl::StrCat("E counts as before: neither M82 nor M83 says how in ", file_.name,
-                       ", and its words in another order would be taken otherwise");
+                       ", and its words in another order would be taken otherwise; either of them "
+                       "in the slicer's start G-code says it");
       return AsItIs(file_, std::move(rewrite));
     }
     rewrite.after = **after;
@@ -399,7 +405,7 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
   };
   note(rewrite.layers_unproven, "layer stays", "layers stay",
        absl::StrCat(" as sliced, because for no faster order could it be proven that ",
-                    rewrite.unproven, "; neither a flag nor a setting of the slicer changes that"));
+                    rewrite.unproven));
   note(rewrite.layers_unclear, "layer stays", "layers stay",
        absl::StrCat(" as sliced, because machines read a line differently: ", rewrite.unclear));
   note(rewrite.layers_blocked, "layer keeps", "layers keep",

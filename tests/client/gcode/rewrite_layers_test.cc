@@ -37,6 +37,7 @@ TEST(RewriteGcode, ALayerThatCannotBeProvenStaysAndTheOthersDoNot) {
   EXPECT_EQ(rewrite->layers_changed, 1);
   EXPECT_EQ(rewrite->layers_unproven, 1);
   EXPECT_THAT(rewrite->unproven, HasSubstr("the same is printed under the same conditions (part."));
+  EXPECT_THAT(rewrite->unproven, HasSubstr("; no flag or setting"));
 }
 
 // kScattered twice, one layer above the other; what is in the first is a wall's piece each.
