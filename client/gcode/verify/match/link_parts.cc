@@ -23,6 +23,8 @@ constexpr size_t kMostCuts = 4;
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
+bool IsSideways(const TraceMove* move) { return move->sideways(); }
+
 // A feed rate alone moves nothing, nor does rounding.
 bool MovesNothing(const TraceMove& move) {
   return !move.firmware && move.filament == 0 && move.kind != MoveKind::kDwell &&
@@ -46,8 +48,13 @@ bool IsSame(const PartStep& known, const PartStep& step) {
          known.behind_um == step.behind_um;
 }
 
+// Above the next path, and down again.
+bool IsOfLift(const PartStep& step) {
+  return step.kind == MoveKind::kDown || (step.kind == MoveKind::kUp && step.behind_um > kSlackUm);
+}
+
 uint64_t FormOf(const LinkPart& part) {
-  uint64_t digest = part.role;
+  uint64_t digest = part.role + (part.in_place ? 3u : 0u);
   for (const PartStep& step : part.steps) digest = Mix(digest, static_cast<uint64_t>(step.kind));
   return digest;
 }
@@ -191,7 +198,7 @@ void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& part
 
 void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
                          std::vector<LinkPart>& parts) const {
-  LinkPart part{role, {}};
+  LinkPart part{role, {}, std::none_of(moves_.begin(), moves_.end(), IsSideways)};
   Micro pulled = 0;
   for (size_t i = 0; i < begin; ++i) pulled -= moves_[i]->filament;
   for (size_t i = begin; i < end; ++i) {
@@ -221,22 +228,36 @@ void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
   if (!part.steps.empty()) parts.push_back(std::move(part));
 }
 
-void KnownParts::Add(LinkPart part) {
+void KnownParts::AddAsItIs(const LinkPart& part) {
   forms_.insert(FormOf(part));
   std::vector<LinkPart>& alike = parts_[KeyOf(part)];
   if (alike.size() < kMostAlike && !HasAny(alike, part, IsSame)) alike.push_back(part);
+}
+
+void KnownParts::Add(LinkPart part) {
+  part.in_place = false;
+  AddAsItIs(part);
   bool spirals = false;
   for (PartStep& step : part.steps) spirals |= std::exchange(step.spiral, 0) != 0;
-  if (spirals) Add(std::move(part));
+  if (spirals) AddAsItIs(part);
+  if (part.role == LinkPart::kSpeed) return;
+  part.in_place = true;
+  if (std::erase_if(part.steps, IsOfLift) > 0) AddAsItIs(part);
 }
 
 void KnownParts::Append(const KnownParts& other) {
   for (const auto& [key, parts] : other.parts_) {
-    for (const LinkPart& part : parts) Add(part);
+    for (const LinkPart& part : parts) AddAsItIs(part);
   }
 }
 
 bool KnownParts::Has(const LinkPart& part) const {
+  if (HasAsItIs(part)) return true;
+  LinkPart along = part;
+  return std::exchange(along.in_place, false) && HasAsItIs(along);
+}
+
+bool KnownParts::HasAsItIs(const LinkPart& part) const {
   const auto found = parts_.find(KeyOf(part));
   return found != parts_.end() && HasAny(found->second, part, IsLike);
 }

@@ -37,6 +37,7 @@ struct LinkPart {
   enum Role : uint8_t { kDeparture, kSpeed, kArrival };
   Role role = kDeparture;
   std::vector<PartStep> steps;  // one of them tells a speed: of travel, or of wipes
+  bool in_place = false;        // of a link in which the head moves up and down alone
 };
 
 // A link of `chunk`, as it is cut into parts.
@@ -82,13 +83,17 @@ class KnownParts {
   void Append(const KnownParts& other);
 
   // Whether there is such a part: of the same steps, at the same speeds and heights, with the same
-  // amounts of filament. A spiral may be a straight move up; travel may be shorter.
+  // amounts of filament. A spiral may be a straight move up; travel may be shorter. A part in
+  // place may lack the lift above the next path.
   bool Has(const LinkPart& part) const;
 
   // Whether there is one of the same kinds of steps.
   bool HasLike(const LinkPart& part) const;
 
  private:
+  void AddAsItIs(const LinkPart& part);
+  bool HasAsItIs(const LinkPart& part) const;
+
   absl::flat_hash_map<uint64_t, std::vector<LinkPart>> parts_;  // by all that has no slack
   absl::flat_hash_set<uint64_t> forms_;
 };

@@ -81,6 +81,19 @@ TEST(VerifyMadeOfParts, NoTravelToALayerHasPartsToo) {
   EXPECT_EQ(Ordered(a, below + leaves + "G1 E1 F2100\nG1 Z.4 F9000\n" + met), "made_of_parts");
 }
 
+// Where the head stays, it need not rise and come down again.
+TEST(VerifyMadeOfParts, NoLiftWhereNothingTravels) {
+  const std::string line = ";TYPE:Internal infill\nG1 F1800\n";
+  const std::string below = kHead + kLifted + kNextLayer;
+  const std::string a = below + "G1 E-1 F2100\nG1 Z.8 F9000\nG1 X10 Y40\nG1 Z.4\nG1 E1 F2100\n" +
+                        line + "G1 X20 Y40 E.3\n";
+  const std::string met = line + "G1 X10 Y40 E.3\n";
+  EXPECT_EQ(Ordered(a, below + "G1 E-1 F2100\nG1 E1 F2100\n" + met), "");
+  EXPECT_EQ(Ordered(a, below + "G1 E-1 F2100\nG1 E1 F900\n" + met), "made_of_parts");
+  EXPECT_EQ(Ordered(a, below + "G1 E-1 F2100\nG1 Z.8 F9000\nG1 E1 F2100\nG1 Z.4 F9000\n" + met),
+            "made_of_parts");
+}
+
 // Nor is there any where the next path begins where the wipe ends.
 TEST(VerifyMadeOfParts, PathsThatAWipeLinksAreLeftAndReachedAsOthers) {
   const auto line = [](const std::string& from, const std::string& to) {
