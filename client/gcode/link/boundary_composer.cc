@@ -1,5 +1,7 @@
 // Links with the marks of a boundary.
 
+#include <algorithm>
+
 #include "client/gcode/link/composer.h"
 #include "client/gcode/link/label_lines.h"
 #include "client/gcode/model/part_links.h"
@@ -8,6 +10,29 @@ namespace traverse::gcode {
 
 bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
   return from_.as_given() && from_.placement().block + 1 == boundary;
+}
+
+// What a step of an arrival does to Z and filament.
+static bool Arrives(StepKind kind) {
+  return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
+         kind == StepKind::kFirmwareRetract || kind == StepKind::kFirmwareUnretract;
+}
+
+// The link that leads to the path in the file, if the path begins otherwise beside its layer's
+// height than the one behind `link`, as scarf seams do, and is arrived at in this link as there.
+std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
+  const Block& given = file_.blocks[*form_.boundary];
+  const uint32_t to = to_.placement().block;
+  if (to_.last().z - to_.first().z == given.last.z - given.first.z) return nullptr;
+  const bool marks = std::any_of(
+      link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {
+        return step.kind == StepKind::kLabel || step.kind == StepKind::kLayerMark ||
+               step.kind == StepKind::kStay;
+      });
+  std::shared_ptr<const Link> own = parts_.LinkTo(to);
+  const bool alike = own->arrival >= 0 && own->SameRetraction(link) &&
+                     own->arrives_retracted == link.arrives_retracted;
+  return alike && !marks ? own : nullptr;
 }
 
 void LinkComposer::ComposeBoundary() {
@@ -40,6 +65,7 @@ void LinkComposer::ComposeBoundary() {
     GoOn();
     if (!as_given && link.retracts()) DepartAsOwn();
   }
+  const std::shared_ptr<const Link> own = link.arrival >= 0 ? OwnArrival(link) : nullptr;
   const ExchangedLabels labels(file_, link, boundary, from_.placement().block,
                                to_.placement().block);
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
@@ -48,13 +74,14 @@ void LinkComposer::ComposeBoundary() {
     if (kind == StepKind::kLabel || kind == StepKind::kStay || kind == StepKind::kSays) {
       link_.Raw(labels.LineOf(i));
     } else if (static_cast<int>(i) != link.arrival) {
-      ComposeBoundaryStep(link, i);
+      if (own == nullptr || link.Leaves(i) || !Arrives(kind)) ComposeBoundaryStep(link, i);
     } else if (like) {
       if (behind_label) Depart(*like);
       TravelAs(link, std::max(link.top, to_.first().z + like->lift), *like);
       Arrive(*like);
     } else {
       TravelToBoundary(link);
+      if (own != nullptr) Arrive(*own);
     }
   }
   const uint32_t to = to_.placement().block;
@@ -73,6 +100,14 @@ void LinkComposer::TravelToBoundary(const Link& link) {
   const Decimal lift = rises || link.lift_feed == 0 ? 0 : donors_.LiftToLayer(*form_.boundary);
   TravelAs(link, link.top + lift, link);
   if (lift > 0) link_.Lift(z, link.lift_feed);
+}
+
+// Of a step of an arrival: as high above the layer as in the file, but not below this path, where
+// that of the file begins lower, as scarf seams do.
+Decimal LinkComposer::HeightBehindTravel(const LinkStep& step) const {
+  if (to_.placement().block == *form_.boundary) return step.to.z;
+  const Decimal above = step.to.z - file_.blocks[*form_.boundary].last.z;
+  return std::max(to_.first().z, to_.last().z + above);
 }
 
 void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
@@ -95,8 +130,7 @@ void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
     case StepKind::kLift:
       // A departure of another link may have lifted the head higher.
       if (link.Leaves(i) && step.to.z >= step.from.z && link_.at().z > step.to.z) return;
-      // Behind the travel, the path of the file may begin lower than this one, as scarf seams do.
-      return LiftAs(step, link.Leaves(i) ? step.to.z : to_.first().z + (step.to.z - link.z_behind));
+      return LiftAs(step, link.Leaves(i) ? step.to.z : HeightBehindTravel(step));
     case StepKind::kSlot:
       // What another path is printed under is set at its beginning, once.
       if ((step.slots & kDynamicsSlots) != 0 &&

@@ -53,10 +53,12 @@ class LinkComposer {
   void ComposeBoundary();
   void ComposeBoundaryStep(const Link& link, size_t i);
   void TravelToBoundary(const Link& link);
+  Decimal HeightBehindTravel(const LinkStep& step) const;
 
   Link LikeWhat(bool retracts) const;
   Link LikeHidden() const;
   std::optional<Link> OwnDeparture(const Link& like) const;
+  std::shared_ptr<const Link> OwnArrival(const Link& link) const;
 
   // Whether the link before block `boundary` follows the path before as it is in the file.
   bool LeavesAsGiven(uint32_t boundary) const;

@@ -273,6 +273,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   }
   TracePath& path = chunk_.paths.back();
   path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
+  path.z_mm = std::max(path.z_mm, static_cast<double>(motion.to[2]) * unit);
   const auto length = static_cast<float>(FlatLength(motion) * unit);
   path.length_mm += length;
   path.filament_mm += static_cast<float>(segment.filament_mm);

@@ -55,6 +55,14 @@ std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path) {
   return steps;
 }
 
+// The head sinks from the height of the layer to where a path begins that rises to that, as scarf
+// seams do: that belongs to the path.
+void LeaveOutSinking(const TracePath& path, std::vector<TravelStep>& steps) {
+  const bool sinks = !steps.empty() && steps.back().kind == MoveKind::kDown &&
+                     steps.back().z_mm < path.z_mm - kOneHeightMm;
+  if (sinks) steps.pop_back();
+}
+
 // How much farther the travel behind unknown lines leads than straight to its path.
 double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
   const TraceLink& link = chunk.links[path];
@@ -106,6 +114,8 @@ void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
     }
     std::vector<TravelStep> had = StepsTo(layer.was(), was);
     std::vector<TravelStep> has = StepsTo(layer.is(), is);
+    LeaveOutSinking(layer.was().paths[was], had);
+    LeaveOutSinking(layer.is().paths[is], has);
     // To a path that begins where the head is, no way leads.
     if (!Goes(had) || !Goes(has)) {
       std::erase_if(had, IsTravel);
