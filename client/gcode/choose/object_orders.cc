@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
+#include <queue>
 #include <utility>
 
 #include "client/gcode/choose/round_trip.h"
@@ -155,13 +157,12 @@ class RunFinder {
 
   // Objects of one region touch, or what lies between them does.
   void NoteContacts(std::vector<LayerObject>& objects) const {
-    absl::flat_hash_map<uint32_t, std::vector<uint32_t>> of_island;
+    absl::flat_hash_map<uint32_t, uint32_t> last;  // [island] its last object so far
     for (uint32_t i = 0; i < objects.size(); ++i) {
       for (uint32_t path = objects[i].begin; path < objects[i].end; ++path) {
-        std::vector<uint32_t>& others = of_island[freedom_.island[path]];
-        if (!others.empty() && others.back() == i) continue;
-        objects[i].behind.insert(objects[i].behind.end(), others.begin(), others.end());
-        others.push_back(i);
+        const auto [found, added] = last.try_emplace(freedom_.island[path], i);
+        const uint32_t before = std::exchange(found->second, i);
+        if (before != i) objects[i].behind.push_back(before);
       }
     }
   }
@@ -222,25 +223,27 @@ LayerObjects ObjectOrders::ObjectsOf(const Layer& layer, const LayerFreedom& fre
 // stays the later one.
 std::vector<uint32_t> ObjectOrders::Sorted(const Layer& layer, const std::vector<LayerObject>& run,
                                            const Ranks& ranks, bool backwards) const {
-  const auto n = static_cast<uint32_t>(run.size());
-  const auto rank_of = [&](uint32_t i) {
+  using Ranked = std::pair<uint32_t, uint32_t>;  // rank, number
+  std::priority_queue<Ranked, std::vector<Ranked>, std::greater<>> free;
+  const auto release = [&](uint32_t i) {
     const uint32_t rank = ranks.at(file_.blocks[layer.first_block + run[i].begin].object);
-    return backwards ? UINT32_MAX - rank : rank;
+    free.emplace(backwards ? UINT32_MAX - rank : rank, i);
   };
-  std::vector<uint32_t> left(n);
-  for (uint32_t i = 0; i < n; ++i) left[i] = i;
-  std::sort(left.begin(), left.end(),
-            [&](uint32_t a, uint32_t b) { return rank_of(a) < rank_of(b); });
-  std::vector<bool> done(n, false);
+  std::vector<size_t> waits(run.size());  // for so many others
+  std::vector<std::vector<uint32_t>> ahead_of(run.size());
+  for (uint32_t i = 0; i < run.size(); ++i) {
+    waits[i] = run[i].behind.size();
+    if (waits[i] == 0) release(i);
+    for (const uint32_t before : run[i].behind) ahead_of[before].push_back(i);
+  }
   std::vector<uint32_t> sorted;
-  while (!left.empty()) {
-    const auto next = std::find_if(left.begin(), left.end(), [&](uint32_t i) {
-      return std::all_of(run[i].behind.begin(), run[i].behind.end(),
-                         [&](uint32_t before) { return done[before]; });
-    });
-    sorted.push_back(*next);
-    done[*next] = true;
-    left.erase(next);
+  while (!free.empty()) {
+    const uint32_t next = free.top().second;
+    free.pop();
+    sorted.push_back(next);
+    for (const uint32_t behind : ahead_of[next]) {
+      if (--waits[behind] == 0) release(behind);
+    }
   }
   return sorted;
 }

@@ -25,7 +25,7 @@ namespace traverse::gcode {
 struct LayerObject {
   uint32_t begin = 0;
   uint32_t end = 0;
-  std::vector<uint32_t> behind;  // others of the same run that it touches, and comes after
+  std::vector<uint32_t> behind;  // of each region of the run that it is of, the object before it
 };
 
 // The objects of a layer that may change places.
