@@ -32,7 +32,8 @@ class IslandFinder {
   IslandFinder(const LayerPair& layer, double height_mm)
       : layer_(layer),
         first_(layer.first_path_was()),
-        regions_(static_cast<int>(layer.end_path_was() - first_)),
+        apart_(layer.end_path_was() - first_),
+        regions_(static_cast<int>(apart_)),
         grid_(layer.pieces(), kPlaceMm) {
     for (uint32_t path = first_; path < layer.end_path_was(); ++path) {
       reach_.push_back(ReachOf(layer.was().paths[path], height_mm));
@@ -60,7 +61,7 @@ class IslandFinder {
   void JoinNear() {
     uint64_t left = kLooks + kLooksEach * grid_.pieces().size();
     for (const Piece& piece : grid_.pieces()) {
-      if (layer_.Ended()) return;
+      if (layer_.Ended() || apart_ <= 1) return;
       const uint32_t one = piece.path - first_;
       grid_.ForEachNear(piece.a, piece.b, reach_[one], [&](uint32_t i) {
         JoinIfNear(piece, grid_.pieces()[i]);
@@ -79,6 +80,7 @@ class IslandFinder {
     const double reach = std::max((reach_[one] + reach_[two]) / 2, kLeastReachMm);
     if (DistanceOfPieces(piece.a, piece.b, other.a, other.b) > reach) return;
     regions_.Join(static_cast<int>(one), static_cast<int>(two));
+    --apart_;
   }
 
   void NumberIslands() {
@@ -154,6 +156,7 @@ class IslandFinder {
 
   const LayerPair& layer_;
   const uint32_t first_;
+  uint32_t apart_;  // regions
   DisjointSets regions_;
   const PieceGrid grid_;
   std::vector<double> reach_;     // [path of the layer]
