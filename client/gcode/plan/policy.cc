@@ -1,5 +1,6 @@
 #include "client/gcode/plan/policy.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
