@@ -1,5 +1,7 @@
 #include "client/gcode/island_map.h"
 
+#include <cmath>
+
 #include "absl/container/flat_hash_map.h"
 #include "absl/types/span.h"
 

@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace traverse::gcode {
 

@@ -1,5 +1,6 @@
 #include "client/gtsp/reader.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>

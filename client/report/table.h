@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace traverse::report {

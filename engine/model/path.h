@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_MODEL_PATH_H_
 #define TRAVERSE_ENGINE_MODEL_PATH_H_
 
+#include <utility>
 #include <vector>
 
 #include "engine/model/point.h"

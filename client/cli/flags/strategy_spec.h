@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_CLI_FLAGS_STRATEGY_SPEC_H_
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"

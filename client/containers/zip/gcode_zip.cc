@@ -1,6 +1,7 @@
 #include "client/containers/zip/gcode_zip.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "absl/status/status.h"

@@ -1,6 +1,7 @@
 #include "client/gateway/api/message_schemas.h"
 
 #include <string>
+#include <utility>
 
 namespace traverse::gateway {
 namespace {

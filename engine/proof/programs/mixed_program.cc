@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <utility>
 
 // clang-format off: it does not stand alone
 #include <coin/CbcCutGenerator.hpp>

@@ -7,6 +7,7 @@
 // Prints Markdown. Exit code 1 if a route was invalid, `auto` was longer than greedy, or, on a
 // machine with nothing else to do, an answer was late.
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>

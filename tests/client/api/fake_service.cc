@@ -4,6 +4,8 @@
 #include <grpcpp/server_builder.h>
 #include <grpcpp/support/channel_arguments.h>
 
+#include <utility>
+
 #include "absl/strings/str_format.h"
 
 namespace traverse::testing {

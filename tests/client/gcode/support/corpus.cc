@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "client/files/read_file.h"
 #include "tests/support/golden.h"

@@ -1,6 +1,7 @@
 #include "tests/client/gcode/support/mutation.h"
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
