@@ -7,15 +7,18 @@
 #include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
+namespace {
+
+// What a step of an arrival does to Z and filament.
+bool Arrives(StepKind kind) {
+  return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
+         kind == StepKind::kFirmwareRetract || kind == StepKind::kFirmwareUnretract;
+}
+
+}  // namespace
 
 bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
   return from_.as_given() && from_.placement().block + 1 == boundary;
-}
-
-// What a step of an arrival does to Z and filament.
-static bool Arrives(StepKind kind) {
-  return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
-         kind == StepKind::kFirmwareRetract || kind == StepKind::kFirmwareUnretract;
 }
 
 // The link that leads to the path in the file, if the path begins otherwise beside its layer's
@@ -23,6 +26,7 @@ static bool Arrives(StepKind kind) {
 std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
   const Block& given = file_.blocks[*form_.boundary];
   const uint32_t to = to_.placement().block;
+  if (to == 0) return nullptr;  // no link leads to it
   if (to_.last().z - to_.first().z == given.last.z - given.first.z) return nullptr;
   const bool marks = std::any_of(
       link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {
