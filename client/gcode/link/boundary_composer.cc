@@ -26,7 +26,6 @@ bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
 std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
   const Block& given = file_.blocks[*form_.boundary];
   const uint32_t to = to_.placement().block;
-  if (to == 0) return nullptr;  // no link leads to it
   if (to_.last().z - to_.first().z == given.last.z - given.first.z) return nullptr;
   const bool marks = std::any_of(
       link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {

@@ -95,7 +95,7 @@ ExchangedLabels::ExchangedLabels(const GcodeFile& file, const Link& link, uint32
 }
 
 void ExchangedLabels::Exchange(uint32_t other, bool begins) {
-  if (other == 0 || other >= file_.blocks.size()) return;
+  if (other >= file_.blocks.size()) return;
   const Link link = ReadLink(file_, other);
   const LabelLines lines = LabelLinesOf(file_, link);
   const std::vector<size_t>& theirs = begins ? lines.begins : lines.ends;

@@ -21,7 +21,7 @@ LayerDepartures::LayerDepartures(const GcodeFile& file, const Layer& layer,
       LoopGap gap = LoopGapOf(file, b);
       if (!gap.moves.empty()) gaps_[b] = std::move(gap);
     }
-    if (b == 0 || (file.blocks[b].link & kLinkFixedFrom) == 0) continue;
+    if ((file.blocks[b].link & kLinkFixedFrom) == 0) continue;
     const Link link = ReadLink(file, b);
     if (link.fixed == 0) continue;
     const MachineState& machine = link.behind_fixed.machine;

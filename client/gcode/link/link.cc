@@ -156,6 +156,8 @@ std::optional<Link> WithPullOf(const Link& link, const Link& own) {
 }
 
 Link ReadLink(const GcodeFile& file, size_t index) {
+  assert(index < file.blocks.size());
+  if (index == 0) return {};
   const Block& before = file.blocks[index - 1];
   const Block& behind = file.blocks[index];
   Link link;

@@ -127,7 +127,8 @@ std::optional<Link> WithWipeOf(Link form, const Link& own);
 // the two wipes there and the other one does not, and both pull back as much.
 std::optional<Link> WithPullOf(const Link& link, const Link& own);
 
-// Link `index` of the file; 0 < index < file.blocks.size().
+// The link that leads to block `index`; to the first one leads none, which is empty. REQUIRES:
+// index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);
 
 // The step of `link`, the one behind `block`, a closed path, that continues along it without
