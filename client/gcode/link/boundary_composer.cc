@@ -38,6 +38,20 @@ std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
   return alike && !marks ? own : nullptr;
 }
 
+// As in the file; but what paths state before the travel that leads to them, they state so here.
+PrintState LinkComposer::StateOfTravel(const Link& link) const {
+  PrintState state = link.travel_state;
+  const uint32_t to = to_.placement().block;
+  if (to == *form_.boundary) return state;
+  const PrintState& of_given = file_.states[file_.blocks[*form_.boundary].state_in];
+  const PrintState own = parts_.LinkTo(to)->travel_state;
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    const bool of_path = state[slot] == of_given[slot] && own[slot] == to_.state()[slot];
+    if (of_path && state[slot] != 0 && own[slot] != 0) state[slot] = own[slot];
+  }
+  return state;
+}
+
 void LinkComposer::ComposeBoundary() {
   const uint32_t boundary = *form_.boundary;
   // A wipe is of the path before it, wherever the label stands. But layers that the file leaves
@@ -55,7 +69,7 @@ void LinkComposer::ComposeBoundary() {
     // Whatever was printed last: at its marks the fan is as in the file.
     link_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }
-  link_.Set(link.travel_state, kDynamicsSlots);
+  link_.Set(StateOfTravel(link), kDynamicsSlots);
   const bool as_given = LeavesAsGiven(boundary);
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> like;

@@ -58,6 +58,7 @@ class LinkComposer {
   Link LikeWhat(bool retracts) const;
   Link LikeHidden() const;
   std::optional<Link> OwnDeparture(const Link& like) const;
+  PrintState StateOfTravel(const Link& link) const;
   std::shared_ptr<const Link> OwnArrival(const Link& link) const;
 
   // Whether the link before block `boundary` follows the path before as it is in the file.

@@ -134,6 +134,25 @@ TEST(MovedObjects, TakeWhatStandsAtTheirLabelsAlong) {
   EXPECT_TRUE(LabelledRight(rewrite.text, Klipper()));
 }
 
+// Whichever object stood there in the file.
+TEST(MovedObjects, AreTravelledToAsFastAsTheyAre) {
+  PillarPrint print;
+  print.before_object = "M220 S9@\n";
+  const GcodeRewrite rewrite = Optimised(Text(print, Klipper()));
+  EXPECT_LT(Share(rewrite), 0.9) << rewrite.unproven;
+
+  std::string object;
+  std::string speed;
+  const std::vector<std::string> lines = absl::StrSplit(rewrite.text, '\n');
+  for (const std::string& line : lines) {
+    if (absl::StartsWith(line, "EXCLUDE_OBJECT_START")) object = line.substr(line.size() - 1);
+    if (absl::StartsWith(line, "M220 S9")) speed = line.substr(7);
+    const bool travels = absl::StartsWith(line, "G1 X") && !absl::StrContains(line, " E");
+    if (travels && !object.empty()) EXPECT_EQ(speed, object) << line;
+    if (absl::StartsWith(line, "EXCLUDE_OBJECT_END")) object.clear();
+  }
+}
+
 // The wipe of a path stands within the label of the next object; two objects still follow each
 // other.
 TEST(MovedObjects, KeepTheWipeBetweenNeighbors) {
