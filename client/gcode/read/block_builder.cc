@@ -374,10 +374,12 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }
 
-// It begins no lower than what lies below, and rises no higher than its layer.
+// It begins no lower than what lies below, and rises no higher than its layer. The layer before may
+// be higher: then it is of another object, in a print object by object.
 bool BlockBuilder::IsScarf(const Block& block, const Layer& layer) const {
   const size_t count = file_.layers.size();
-  const Decimal below = count > 1 ? file_.layers[count - 2].z : 0;
+  const Decimal before = count > 1 ? file_.layers[count - 2].z : 0;
+  const Decimal below = before < layer.z ? before : 0;
   return block.first.z >= below && block.last.z <= layer.z;
 }
 

@@ -90,7 +90,8 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   Cut cut;
   if (Ignores(line)) return cut;
   const bool rises = line.role == LineRole::kDeposit && machine.motion().from[2] < line.z;
-  const bool within = rises && (line.z <= height_ || GoesOnRising(machine.motion()));
+  const bool of_layer = layer_prints_ && line.z <= height_;
+  const bool within = rises && (of_layer || GoesOnRising(machine.motion()));
   if (line.role == LineRole::kDeposit && has_height_ && line.z != height_ && !within) {
     CutAtHeight(machine);
     cut.before = true;

@@ -204,5 +204,17 @@ TEST(ScarfSeams, OtherPathsThatRiseStay) {
   }
 }
 
+// The layer before is the top of another object.
+TEST(ScarfSeams, BeginTheNextObjectOfAPrintOneByOne) {
+  const std::string text = Seams(kLifted);
+  const size_t first = text.find(";LAYER_CHANGE");
+  const std::string object = text.substr(first, text.rfind("G1 E-.8") - first);
+  const auto file =
+      testing::Read(text.substr(0, first) + object + absl::StrReplaceAll(object, {{" Y", " Y9"}}));
+
+  ASSERT_EQ(file->layers.size(), 6u);
+  for (const Block& block : file->blocks) EXPECT_FALSE(block.flags & kBlockPinned);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -140,5 +140,26 @@ TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
             "");
 }
 
+// The next object of a print one by one begins lower than the last one ended, here with a wall that
+// rises. Wall and infill are one island, so nothing else is printed before the layer above.
+TEST(VerifyRest, AWallThatRisesBehindTheMarkOfALayerIsOfThatOne) {
+  const auto layer = [](int height, const std::vector<int>& infill) {
+    std::string text =
+        absl::StrCat(";LAYER_CHANGE\nG1 Z", height, " F9000\n", "G1 X60 Y0 Z", height - 1,
+                     ".1\n;TYPE:Outer wall\nG1 X65 Z", height - 1, ".5 E.1 F1200\nG1 X70 Z", height,
+                     " E.2\nG1 Y10 E.3\n", ";TYPE:Internal infill\n");
+    for (const int x : infill) {
+      absl::StrAppend(&text, "G1 X", x, " Y10 F60\nG1 Y0.4 E.3 F6000\n");
+    }
+    return text;
+  };
+  const auto print = [&](const std::vector<int>& infill) {
+    return Print({{0}, {0}, {0}}) + layer(1, infill) + layer(2, infill);
+  };
+  const std::string given = print({62, 68, 64, 66});
+
+  EXPECT_EQ(Rests(given, print({68, 66, 64, 62})), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
