@@ -19,8 +19,19 @@ struct Odd {
 struct Part {
   const Side& side;
   size_t index = 0;
+  SectionLines& lines;
 
   const Section& section() const { return side.cut.sections[index]; }
+};
+
+struct BothSides {
+  const Side& original;
+  const Side& optimised;
+  SectionLines lines_was{original.text};
+  SectionLines lines_is{optimised.text};
+
+  Part Was(size_t index) { return {original, index, lines_was}; }
+  Part Is(size_t index) { return {optimised, index, lines_is}; }
 };
 
 std::optional<Odd> FirstOdd(const Part& a, const Part& b, bool deposits) {
@@ -31,8 +42,8 @@ std::optional<Odd> FirstOdd(const Part& a, const Part& b, bool deposits) {
   };
   const auto for_each_line = [deposits](const Part& part, const auto& visit) {
     const Section& section = part.section();
-    ForEachLine(part.side.text, deposits ? section.first_line : section.first_note,
-                deposits ? section.last_line : section.last_note, visit);
+    part.lines.ForEach(deposits ? section.first_line : section.first_note,
+                       deposits ? section.last_line : section.last_note, visit);
   };
   std::map<uint64_t, int64_t> known;
   for_each_line(b, [&](const VerifyLine& line) {
@@ -114,12 +125,13 @@ size_t EndOfPrint(const Sections& cut) {
 }
 
 // The first difference in section `i`.
-std::optional<VerifyBreak> DifferenceIn(const Side& original, const Side& optimised, size_t i,
-                                        size_t end_of_print) {
+std::optional<VerifyBreak> DifferenceIn(BothSides& sides, size_t i, size_t end_of_print) {
+  const Side& original = sides.original;
+  const Side& optimised = sides.optimised;
   const Section& was = original.cut.sections[i];
   const Section& is = optimised.cut.sections[i];
-  const Part part_was{original, i};
-  const Part part_is{optimised, i};
+  const Part part_was = sides.Was(i);
+  const Part part_is = sides.Is(i);
   if (was.deposits != is.deposits) return MultisetDifference(part_was, part_is, true);
   if (auto ends = CompareEnds(part_was, part_is)) return ends;
   if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
@@ -168,18 +180,19 @@ struct LayerSums {
 
 // Of a layer whose objects have changed places. A section's last line may be the label of the next
 // object, and the fan there is that of the one before.
-std::optional<VerifyBreak> MovedDifference(const Side& original, const Side& optimised,
-                                           const MovedLayer& layer) {
+std::optional<VerifyBreak> MovedDifference(BothSides& sides, const MovedLayer& layer) {
+  const Side& original = sides.original;
+  const Side& optimised = sides.optimised;
   for (size_t i = layer.first; i < layer.end; ++i) {
-    const Part was{original, layer.Of(i)};
-    const Part is{optimised, i};
+    const Part was = sides.Was(layer.Of(i));
+    const Part is = sides.Is(i);
     if (was.section().deposits != is.section().deposits) {
       return MultisetDifference(was, is, true);
     }
     if (was.index == i && was.section().header != is.section().header) {
       return HeaderDifference(was, is);
     }
-    const Part end{original, layer.ends[i - layer.first]};
+    const Part end = sides.Was(layer.ends[i - layer.first]);
     const bool labels = end.section().names && is.section().names;
     if (labels && !layer.goes_on[i - layer.first]) continue;
     if (auto ends = CompareEnds(end, is)) return ends;
@@ -209,17 +222,18 @@ std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised
   const std::vector<Section>& sections_is = optimised.cut.sections;
   const size_t common = std::min({sections_was.size(), sections_is.size(), end});
   const size_t end_of_print = whole ? EndOfPrint(original.cut) : SIZE_MAX;
+  BothSides sides{original, optimised};
   std::vector<VerifyBreak> found;
   for (size_t i = first; i < common && !limit.Ended(); ++i) {
     if (!moved.empty() && moved.front().first == i && moved.front().end <= common) {
-      if (auto difference = MovedDifference(original, optimised, moved.front())) {
+      if (auto difference = MovedDifference(sides, moved.front())) {
         found.push_back(*std::move(difference));
       }
       i = moved.front().end - 1;
       moved.remove_prefix(1);
       continue;
     }
-    if (auto difference = DifferenceIn(original, optimised, i, end_of_print)) {
+    if (auto difference = DifferenceIn(sides, i, end_of_print)) {
       found.push_back(*std::move(difference));
     }
     // Behind such lines it is not known what belongs together.

@@ -144,15 +144,25 @@ class SectionCutter {
   bool in_header_ = false;  // no travel, and no section has ended, since the mark of a layer
 };
 
-// For messages: calls visit(line) for the lines `first` to `last`.
-template <typename Visit>
-void ForEachLine(std::string_view text, size_t first, size_t last, Visit visit) {
-  VerifyMachine machine(text);
-  for (VerifyLine line; machine.Next(line);) {
-    if (line.number > last) return;
-    if (line.number >= first) visit(line);
+// For messages: the lines of sections, in one pass over the text while sections follow each other.
+class SectionLines {
+ public:
+  explicit SectionLines(std::string_view text) : text_(text), machine_(text) {}
+
+  // Calls visit(line) for the lines `first` to `last`.
+  template <typename Visit>
+  void ForEach(size_t first, size_t last, Visit visit) {
+    if (first <= passed_) *this = SectionLines(text_);
+    VerifyLine line;
+    while (passed_ + 1 < first && machine_.Next(line)) passed_ = line.number;
+    for (VerifyMachine machine = machine_; machine.Next(line) && line.number <= last;) visit(line);
   }
-}
+
+ private:
+  std::string_view text_;
+  VerifyMachine machine_;  // behind line passed_
+  size_t passed_ = 0;
+};
 
 }  // namespace traverse::gcode
 

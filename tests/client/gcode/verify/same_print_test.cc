@@ -10,6 +10,7 @@
 #include "absl/strings/str_split.h"
 #include "client/files/md5.h"
 #include "tests/client/gcode/verify/small_prints.h"
+#include "tests/support/growth.h"
 
 namespace traverse::gcode {
 namespace {
@@ -258,6 +259,20 @@ TEST(SamePrint, SettingsAreAsTheyWereWhereALineIsNotKnown) {
             "same_print");
   EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M104 S0\n", "M204 S500\nM104 S0\n")), "");
   EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M84\n", "M84\nM221 S90\n")), "same_print");
+}
+
+// Both files were read from their beginning for each section that differs.
+TEST(SamePrint, ManySectionsThatDifferTakeNoLongerEach) {
+  const auto check = [](int sections) {
+    std::string a = kHead;
+    std::string b = kHead;
+    for (int i = 0; i < sections; ++i) {
+      absl::StrAppend(&a, "G1 X0 Y5 F9000\nG1 X9 Y5 E.3 F1200\nDO_IT\n");
+      absl::StrAppend(&b, "G1 X0 Y5 F9000\nG1 X8 Y5 E.3 F1200\nG1 X9 Y5 F9000\nDO_IT\n");
+    }
+    EXPECT_EQ(Broken(a, b), "same_print");
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(500, check), traverse::testing::kSlowGrowth);
 }
 
 }  // namespace
