@@ -169,8 +169,13 @@ FREE_AND_GREEDY = field(1, b"\x10\x03" + field(3, field(1, b"greedy")))
 ALL = {
     "inspect": Command("inspect", "GIVEN"),
     "greedy": Command("optimize", "GIVEN", "--policy=free", "--strategy=greedy", "-o", "MADE", "--quiet"),
-    "auto": Command("optimize", "GIVEN", "--policy=balanced", "--deadline=1s", "-o", "MADE", "--quiet"),
+    "timed": Command("optimize", "GIVEN", "--policy=balanced", "--deadline=1s", "-o", "MADE", "--quiet"),
+    "safe": Command("optimize", "GIVEN", "--policy=safe", "-o", "MADE", "--quiet"),
+    "fast": Command("optimize", "GIVEN", "--policy=fast", "-o", "MADE", "--quiet"),
+    "safe_ni2opt": Command("optimize", "GIVEN", "--policy=safe", "--strategy=ni2opt", "-o", "MADE", "--quiet"),
+    "fast_ni2opt": Command("optimize", "GIVEN", "--policy=fast", "--strategy=ni2opt", "-o", "MADE", "--quiet"),
     "verify": Command("verify", "GIVEN", "OTHER"),
+    "same": Command("verify", "GIVEN", "GIVEN"),
     "free": Command("verify", "--policy=free", "--allow=infill_order,wall_order,fan_order,wipes", "GIVEN", "OTHER"),
     "compare": Command("compare", "GIVEN", "--strategies=none,greedy"),
     "convert": Command("convert", "GIVEN", "-o", "MADE"),
@@ -187,3 +192,5 @@ ALL = {
     "/v1/optimize": Http("/v1/optimize?deadline=30s", of_layers=True),
     "server": OfServer("--strategy=greedy"),
 }
+
+SHORT = ("inspect", "fast_ni2opt", "verify", "job")

@@ -23,49 +23,49 @@ import time
 import zipfile
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-import grow
+import grown_files as grown
 from attacks.attacked_server import Gateway
 
 LEAST = 16 << 20  # for any file
 
 
 def dense(n):
-    return grow.one_layer(";TYPE:Internal infill\n" + grow.travel(0, 0) + "G1X1Y1E1\nG1X2Y1E1\n" * n)
+    return grown.one_layer(";TYPE:Internal infill\n" + grown.travel(0, 0) + "G1X1Y1E1\nG1X2Y1E1\n" * n)
 
 
 def dense_layers(n):
-    return grow.HEAD + "".join(grow.LAYER.format(z=z) + ";TYPE:Internal infill\n" + grow.travel(0, 0) + "G1X1Y1E1\nG1X2Y1E1\n" * 500
+    return grown.HEAD + "".join(grown.LAYER.format(z=z) + ";TYPE:Internal infill\n" + grown.travel(0, 0) + "G1X1Y1E1\nG1X2Y1E1\n" * 500
                                for z in range(1, n // 500 + 2)) + "M107\n"
 
 
 def short_paths(n):
-    return grow.one_layer(";TYPE:Internal infill\n" + "".join(f"G0X{x}Y{y}\nG1X{x + 1}Y{y}E1\n" for x, y in grow.spots(n)))
+    return grown.one_layer(";TYPE:Internal infill\n" + "".join(f"G0X{x}Y{y}\nG1X{x + 1}Y{y}E1\n" for x, y in grown.spots(n)))
 
 
 def short_paths_in_layers(n):
-    return grow.HEAD + "".join(grow.LAYER.format(z=z) + ";TYPE:Internal infill\n"
-                               + "".join(f"G0X{x}Y{y}\nG1X{x + 1}Y{y}E1\n" for x, y in grow.spots(200)) for z in range(1, n // 200 + 2)) + "M107\n"
+    return grown.HEAD + "".join(grown.LAYER.format(z=z) + ";TYPE:Internal infill\n"
+                               + "".join(f"G0X{x}Y{y}\nG1X{x + 1}Y{y}E1\n" for x, y in grown.spots(200)) for z in range(1, n // 200 + 2)) + "M107\n"
 
 
 def commented(n):
-    return grow.one_layer(";TYPE:Internal infill\n" + "".join(grow.line(x, y, x + 2, y).replace("\n", " ; as it is said here, so it is done\n")
-                                                             for x, y in grow.spots(n)))
+    return grown.one_layer(";TYPE:Internal infill\n" + "".join(grown.line(x, y, x + 2, y).replace("\n", " ; as it is said here, so it is done\n")
+                                                             for x, y in grown.spots(n)))
 
 
 def blank_lines(n):
-    return grow.one_layer(";TYPE:Internal infill\n" + "\n" * n * 40 + grow.line(0, 0, 9, 9))
+    return grown.one_layer(";TYPE:Internal infill\n" + "\n" * n * 40 + grown.line(0, 0, 9, 9))
 
 
 def sample(n):
     """A print by a slicer, layer upon layer again."""
-    with open(os.path.join(os.path.dirname(grow.__file__), "..", "..", "deploy", "samples", "clusters13.gcode"), encoding="utf-8") as file:
+    with open(os.path.join(os.path.dirname(grown.__file__), "..", "..", "deploy", "samples", "clusters13.gcode"), encoding="utf-8") as file:
         text = file.read()
     return text + "".join(f";LAYER_CHANGE\n;Z:{100 + z}\nG1 Z{100 + z}\n" + text[text.index(";LAYER_CHANGE"):text.rindex(";LAYER_CHANGE")]
                           for z in range(n * 60 // len(text)))
 
 
 KINDS = {made.__name__: made for made in (dense, dense_layers, short_paths, short_paths_in_layers, commented, blank_lines, sample)}
-KINDS.update({name: grow.DIMENSIONS[name] for name in (
+KINDS.update({name: grown.DIMENSIONS[name] for name in (
     "paths", "layers", "loops", "walls_and_infill", "tools", "labels", "settings", "comments", "corners", "travel_bends", "long_lines",
     "crossing_infill", "crossing_both", "same_place", "arcs", "waits")})
 CALLS = ["/v1/gcode?policy=free", "/v1/gcode?strategy=greedy", "/v1/inspect", "/v1/verify"]
@@ -107,7 +107,7 @@ class Weight:
     def __init__(self, content, path):
         gateway = Gateway(12_000_000_000, ["--log_file=/dev/null", "--max_time=120s"])
         try:
-            self.ask(gateway, grow.layers(3).encode(), path)  # starts what is started once
+            self.ask(gateway, grown.layers(3).encode(), path)  # starts what is started once
             before = gateway.memory()
             self.counted, self.peak, self.done = 0, 0, False
             watch = threading.Thread(target=self.watch, args=(gateway,))
