@@ -2,7 +2,9 @@
 // states is true.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -49,9 +51,18 @@ struct Displacement {
   double given = 0;
 };
 
+// How far the nearest one of `places`, ascending, is from `wanted`, if that lies between them;
+// else 0: there may be a nearer one.
+double ToPlace(double wanted, const std::array<double, 4>& places) {
+  const auto behind = std::lower_bound(places.begin(), places.end(), wanted);
+  if (behind == places.begin() || behind == places.end()) return 0;
+  return std::min(wanted - *std::prev(behind), *behind - wanted);
+}
+
 // A line is no farther off than it was, or stands between there and where it would be if it kept
 // its place in its section, which is elsewhere where one section saves more time than another.
-// Lines that state no share stay where they were. The prints take `was_seconds` and `is_seconds`.
+// Lines that state no share stay where they were. None is too far off if no place where it may
+// stand is nearer. The prints take `was_seconds` and `is_seconds`.
 Displacement DisplacementOf(const ProgressLog& was, double was_seconds, const ProgressLog& is,
                             double is_seconds, size_t i) {
   Displacement found;
@@ -63,9 +74,13 @@ Displacement DisplacementOf(const ProgressLog& was, double was_seconds, const Pr
       PercentAt(is_seconds,
                 Transferred(was.lines[i].seconds, SectionOf(was, section), SectionOf(is, section)));
   const double off = std::abs(found.given - found.stated);
-  const double least = std::min(found.stated - off, alike) - kSlackPercent;
-  const double most = std::max(found.stated + off, alike) + kSlackPercent;
-  found.excess = std::max(least - found.percent, found.percent - most);
+  const double least = std::min(found.stated - off, alike);
+  const double most = std::max(found.stated + off, alike);
+  std::array<double, 4> places = is.lines[i].places;
+  for (double& place : places) place = PercentAt(is_seconds, place);
+  const double early = least - found.percent - ToPlace(least, places);
+  const double late = found.percent - most - ToPlace(most, places);
+  found.excess = std::max(early, late) - kSlackPercent;
   return found;
 }
 

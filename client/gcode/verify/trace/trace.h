@@ -12,6 +12,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -156,6 +157,9 @@ struct Progress {
   uint32_t section = 0;
   double percent = -1;  // of the print that it states as done; less than 0: none
   double seconds = 0;   // since the file began: Clock
+
+  // Where such a line may stand: where the deposits before it and behind it begin and end.
+  std::array<double, 4> places{};
 };
 
 struct SectionBegin {

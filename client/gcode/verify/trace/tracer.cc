@@ -117,6 +117,7 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   const double before_seconds = clock_.seconds();
   if (section != last_section_) BeginSection(line, section, before_seconds);
   clock_.Take(line, machine);
+  if (line.role == LineRole::kDeposit) NotePlaces(before_seconds);
   if (line.text[0] == ';') {
     TakeComment(line, section);
   } else if (line.role == LineRole::kDeposit) {
@@ -135,8 +136,14 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     held_seconds_ = clock_.seconds();
   }
   if (line.role == LineRole::kProgress) {
-    chunk_.progress.push_back(
-        {line.digest, number, section, PercentTold(line.text), clock_.seconds()});
+    const double now = clock_.seconds();
+    chunk_.progress.push_back({line.digest,
+                               number,
+                               section,
+                               PercentTold(line.text),
+                               now,
+                               {begun_seconds_, left_seconds_, now, now}});
+    ++without_next_;
   }
   if (line.sets_back) {
     chunk_.line_faults.push_back({section, number, LineFaultKind::kSetsBack});
@@ -147,6 +154,18 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     link_.scripted = true;
     link_.fixed = static_cast<uint32_t>(pending_.size());
   }
+}
+
+// A deposit begins and ends where a line of progress may stand.
+void Tracer::NotePlaces(double before_seconds) {
+  for (size_t i = chunk_.progress.size(); i > 0 && without_next_ > 0; --without_next_) {
+    std::array<double, 4>& places = chunk_.progress[--i].places;
+    places[2] = before_seconds;
+    places[3] = clock_.seconds();
+  }
+  without_next_ = 0;
+  begun_seconds_ = before_seconds;
+  left_seconds_ = clock_.seconds();
 }
 
 // A change of height begins a section before its first deposit, but what stands behind the last

@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACER_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -39,6 +40,7 @@ class Tracer {
   void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
   void TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
   void BeginSection(const VerifyLine& line, uint32_t section, double before_seconds);
+  void NotePlaces(double before_seconds);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
   bool OnlyRounding() const;
   PathClass ClassNow(const VerifyLine& line) const;
@@ -63,6 +65,9 @@ class Tracer {
   uint32_t last_section_ = UINT32_MAX;
   uint32_t last_held_line_ = 0;  // the last deposit or fence, and when it was done
   double held_seconds_ = 0;
+  double begun_seconds_ = 0;  // the last deposit
+  double left_seconds_ = 0;
+  size_t without_next_ = 0;  // lines of progress since then
 };
 
 }  // namespace traverse::gcode

@@ -130,6 +130,25 @@ TEST(VerifyProgress, MayStandBetweenItsPlaceAndWhereItIsTrue) {
   EXPECT_EQ(Broken(a, print(1, 12), {}, kRules), "progress");
 }
 
+// A line of 10 mm with a place on either side of it, and none within it.
+TEST(VerifyProgress, StandsWhereNoPlaceIsNearer) {
+  const auto print = [](int seconds, int before) {
+    std::string text = kHead;
+    for (int i = 0; i < 8; ++i) {
+      absl::StrAppend(&text, "G1 X0 Y", 2 * i, " F", i == 7 ? 600.0 / seconds : 600000.0, "\n",
+                      i == before ? "; elapsed time: 4\n" : "",
+                      ";TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n");
+    }
+    return text;
+  };
+  const std::string a = print(6, 4);  // at 4 of 14 s: 2.5 of 8.7
+
+  EXPECT_EQ(Broken(a, print(1, 2), {}, kRules), "");
+  EXPECT_EQ(Broken(a, print(1, 3), {}, kRules), "");
+  EXPECT_EQ(Broken(a, print(1, 1), {}, kRules), "progress");
+  EXPECT_EQ(Broken(a, print(1, 5), {}, kRules), "progress");
+}
+
 TEST(VerifyProgress, MayStandBetweenTheSegmentsOfAPath) {
   const std::string line = "G1 X0 Y0 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
   const std::string path = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
