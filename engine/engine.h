@@ -21,6 +21,7 @@
 #include "engine/base/budget.h"
 #include "engine/base/executor.h"
 #include "engine/model/cost_spec.h"
+#include "engine/model/links.h"
 #include "engine/model/moves.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
@@ -69,6 +70,10 @@ struct JobLayer {
   // Walls that travel should not cross if the cost is a time; passes CheckWalls.
   LayerWalls walls = {};
 
+  // What lies between its paths besides moves; LinksFit for `plan`. The search knows none of it:
+  // its route is improved by this cost at the end (schedule/layer_solver_links.cc).
+  LayerLinks links = {};
+
   // A route of the plan that is known beforehand; empty if there is none. The strategy begins with
   // it if it is no worse than greedy's, and the answer never costs more than it does from the same
   // start. REQUIRES: FindRouteFault finds nothing in it.
@@ -80,8 +85,9 @@ struct LayerOutcome {
   uint64_t index = 0;  // position in the job, from 0
   Plan plan;           // as given
   Point start;
-  Point end;
-  Route route;  // valid: checked by the validator
+  Point end;              // where travel to the next layer begins
+  LinkSeconds departure;  // what it takes to get there from the last path
+  Route route;            // valid: checked by the validator
   TravelSplit given;
   TravelSplit travel;
   double cost_given = 0;  // in the unit of the layer's cost, without moves to the cleaning point

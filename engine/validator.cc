@@ -172,7 +172,8 @@ absl::Status ValidateRoute(const Plan& plan, const Route& route, Budget* budget)
   return CheckTree(plan, position, rest);
 }
 
-TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route, Budget* budget) {
+TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route, Budget* budget,
+                          const LayerLinks* links) {
   assert(ValidateRoute(plan, route).ok());
   TravelSplit split;
   Point at = start;
@@ -191,6 +192,11 @@ TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route, Bud
     }
     const int exit = path.kind == Path::Kind::kOpen ? 1 - visit.entry : visit.entry;
     at = path.points[static_cast<size_t>(exit)];
+    if (links != nullptr && !links->empty()) {
+      const std::vector<Departure>& known = (*links)[static_cast<size_t>(visit.path)].departures;
+      const size_t which = known.size() > 1 ? static_cast<size_t>(exit) : 0;
+      if (!known.empty() && known[which].from) at = *known[which].from;
+    }
     from = path.kind;
   }
   return split;

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "engine/base/budget.h"
 #include "engine/model/cost_spec.h"
+#include "engine/model/links.h"
 #include "engine/model/moves.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
@@ -26,9 +27,9 @@ namespace traverse {
 absl::Status ValidateRoute(const Plan& plan, const Route& route, Budget* budget = nullptr);
 
 // Returns the travel of `route` in mm, from `start` to the last exit. A move from the start counts
-// as one from a contour. Asks `budget` as above. REQUIRES: `route` is valid.
+// as one from a contour. Asks `budget` as above. `links` may be null. REQUIRES: `route` is valid.
 TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route,
-                          Budget* budget = nullptr);
+                          Budget* budget = nullptr, const LayerLinks* links = nullptr);
 
 // What a strategy claims about the moves of a route in a layer with walls.
 struct MoveClaims {
@@ -42,10 +43,13 @@ struct MoveClaims {
 // crosses a wall. Moves that touch a wall within rounding may count either way. Asks `budget`
 // regularly, if it is not null; once that is cancelled, nobody needs the result, and the rest
 // counts as right. O(n log n + m k) for n points of walls and m moves that pass k segments in y.
-// REQUIRES: `route` is valid, `walls` passes CheckWalls, and the cost is a time.
+// With `links` (null: none) moves begin where these say, and departures and arrivals count;
+// `before`: what it took to leave for `start`.
+// REQUIRES: `route` is valid, `walls` passes CheckWalls, LinksFit, and the cost is a time.
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
                            Point start, const Route& route, const MoveClaims& claims,
-                           Budget* budget = nullptr);
+                           Budget* budget = nullptr, const LayerLinks* links = nullptr,
+                           const LinkSeconds& before = {});
 
 }  // namespace traverse
 

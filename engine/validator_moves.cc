@@ -167,8 +167,9 @@ class MoveCheck {
     }
   }
 
-  // Of a straight move or, with `detour`, one over its points.
-  absl::Status Add(Point from, Point to, const Detour* detour) {
+  // Of a straight move or, with `detour`, one over its points. `ends`: what leaving and arriving
+  // take besides.
+  absl::Status Add(Point from, Point to, const Detour* detour, const LinkSeconds& ends) {
     double length = Length(from, to);
     const Position one(from.x, from.y);
     const Position other(to.x, to.y);
@@ -177,7 +178,7 @@ class MoveCheck {
         return absl::FailedPreconditionError(
             "it is a known move, so it does not lead around walls");
       }
-      AddKnown(move->second, length);
+      AddKnown(move->second, length, ends);
       return absl::OkStatus();
     }
     Crossing crossing = Crossing::kNo;
@@ -203,8 +204,8 @@ class MoveCheck {
         1 - (retracted_.contains(one) ? 0.5 : 0) - (retracted_.contains(other) ? 0.5 : 0);
     const auto [added_low, low_retracts] = Of(length, exposed, false, pays);
     const auto [added_high, high_retracts] = Of(length, exposed, true, pays);
-    const double low = motion + added_low;
-    const double high = motion + added_high;
+    const double low = motion + added_low + (low_retracts ? ends.retracted : ends.open);
+    const double high = motion + added_high + (high_retracts ? ends.retracted : ends.open);
     const bool surely = crossing == Crossing::kYes;
     const bool perhaps = crossing != Crossing::kNo;
     cost_.Add(surely ? high : low, perhaps ? high : low);
@@ -229,11 +230,12 @@ class MoveCheck {
   }
 
  private:
-  void AddKnown(const KnownMove& move, double length) {
+  void AddKnown(const KnownMove& move, double length, const LinkSeconds& ends) {
     double least = MotionSeconds(spec_, length);
     if (length > spec_.retraction_threshold_mm) least += spec_.retraction_seconds;
-    const double seconds =
-        std::max(least, move.seconds) + (move.crosses ? spec_.crossing_seconds : 0);
+    const double seconds = std::max(least, move.seconds) +
+                           (move.crosses ? spec_.crossing_seconds : 0) +
+                           (move.retracts ? ends.retracted : ends.open);
     const double retractions = move.retracts && spec_.retraction_seconds > 0 ? 1 : 0;
     cost_.Add(seconds, seconds);
     crossings_.Add(move.crosses ? 1 : 0, move.crosses ? 1 : 0);
@@ -263,27 +265,53 @@ class MoveCheck {
   Range retractions_;
 };
 
+Departure LeavingAt(const PathLinks& links, int exit) {
+  const std::vector<Departure>& all = links.departures;
+  if (all.empty()) return {};
+  return all.size() > 1 ? all[static_cast<size_t>(exit)] : all.front();
+}
+
+LinkSeconds ArrivingAt(const PathLinks& links, int entry) {
+  const std::vector<LinkSeconds>& all = links.arrivals;
+  if (all.empty()) return {};
+  return all.size() > 1 ? all[static_cast<size_t>(entry)] : all.front();
+}
+
 }  // namespace
 
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
                            Point start, const Route& route, const MoveClaims& claims,
-                           Budget* budget) {
+                           Budget* budget, const LayerLinks* links, const LinkSeconds& before) {
   assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
   assert(ValidateRoute(plan, route).ok());
   MoveCheck check(plan, walls, spec);
   size_t next = 0;
   Point at = start;
+  LinkSeconds leaving = before;
+  const bool has_links = links != nullptr && !links->empty();
   for (size_t i = 0; i < route.size(); ++i) {
     if (budget != nullptr && budget->Exhausted() && budget->cancelled()) return absl::OkStatus();
-    const Path& path = plan.paths[static_cast<size_t>(route[i].path)];
+    const auto path_number = static_cast<size_t>(route[i].path);
+    const Path& path = plan.paths[path_number];
     const bool leads_around = next < claims.detours.size() && claims.detours[next].visit == i;
     const Detour* detour = leads_around ? &claims.detours[next++] : nullptr;
     const Point to = path.points[static_cast<size_t>(route[i].entry)];
-    if (const absl::Status fault = check.Add(at, to, detour); !fault.ok()) {
+    LinkSeconds ends = leaving;
+    if (has_links) {
+      const LinkSeconds arriving = ArrivingAt((*links)[path_number], route[i].entry);
+      ends.open += arriving.open;
+      ends.retracted += arriving.retracted;
+    }
+    if (const absl::Status fault = check.Add(at, to, detour, ends); !fault.ok()) {
       return absl::Status(fault.code(), absl::StrCat("route[", i, "]: ", fault.message()));
     }
     const int exit = path.kind == Path::Kind::kOpen ? 1 - route[i].entry : route[i].entry;
     at = path.points[static_cast<size_t>(exit)];
+    leaving = {};
+    if (!has_links) continue;
+    const Departure departure = LeavingAt((*links)[path_number], exit);
+    at = departure.from.value_or(at);
+    leaving = departure.seconds;
   }
   if (next != claims.detours.size()) {
     return absl::FailedPreconditionError(absl::StrCat("detours[", next, "]: belongs to no move"));

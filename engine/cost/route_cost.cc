@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/base/rest.h"
+#include "engine/cost/link_cost.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/cost/wall_cost.h"
 
@@ -27,9 +28,25 @@ bool ForEachMove(const LayerProblem& problem, const Route& route, VisitMove visi
   return true;
 }
 
+double LinkedRouteCost(const LayerProblem& problem, const Route& route, Budget* budget) {
+  Rest rest(budget);
+  const bool asks_often = problem.walls != nullptr && budget != nullptr;
+  const LinkCost cost(problem);
+  LinkCost::Left left = cost.Before();
+  double sum = 0;
+  for (const Visit& visit : route) {
+    rest(8);
+    if (asks_often && budget->Exhausted() && budget->cancelled()) return sum;
+    sum += cost.To(left, visit).cost;
+    left = cost.After(visit);
+  }
+  return sum + cost.ToFinish(left);
+}
+
 }  // namespace
 
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget) {
+  if (problem.links != nullptr) return LinkedRouteCost(problem, route, budget);
   Rest rest(budget);
   const bool asks_often = problem.walls != nullptr && budget != nullptr;
   const TravelCost cost(problem);
@@ -72,6 +89,12 @@ double CrossingPrice(const LayerProblem& problem, const Route& route) {
     return true;
   });
   return sum * problem.walls_unit;
+}
+
+Departure DepartureAfter(const LayerProblem& problem, const Route& route) {
+  const LinkCost cost(problem);
+  const LinkCost::Left left = route.empty() ? cost.Before() : cost.After(route.back());
+  return {left.at, left.seconds};
 }
 
 Point RouteEnd(const Plan& plan, const Route& route, Point start) {

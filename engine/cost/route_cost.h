@@ -9,9 +9,9 @@
 namespace traverse {
 
 // Sum of the costs of all moves of `route`, in the unit of problem.cost, including the move to
-// `finish`. Asks `budget` regularly, if it is not null; among walls, where each move may take long,
-// stops once that is cancelled. REQUIRES: the visits are of paths of the problem's plan; they need
-// not be all of them.
+// `finish`, and with `links`, if the problem has them. Asks `budget` regularly, if it is not null;
+// among walls, where each move may take long, stops once that is cancelled. REQUIRES: the visits
+// are of paths of the problem's plan; they need not be all of them.
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget = nullptr);
 
 // The same, but infinite if `budget` is exhausted and what is left takes much longer. Only among
@@ -22,7 +22,11 @@ double RouteCostInTime(const LayerProblem& problem, const Route& route, Budget& 
 // as above.
 double CrossingPrice(const LayerProblem& problem, const Route& route);
 
-// Where the head is after `route`: the last exit, or `start` for an empty route.
+// How the head leaves the last path of `route`: Departure::from is set, also without links. For an
+// empty route as it came to the start.
+Departure DepartureAfter(const LayerProblem& problem, const Route& route);
+
+// Where the head is after `route`, without links: the last exit, or `start` for an empty route.
 Point RouteEnd(const Plan& plan, const Route& route, Point start);
 
 }  // namespace traverse

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/model/cost_spec.h"
+#include "engine/model/links.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
 
@@ -33,6 +34,11 @@ struct LayerProblem {
 
   // What the costs of `walls` are multiplied by to be in the unit of `cost` (cost/cost_unit.h).
   double walls_unit = 1;
+
+  // What lies between paths besides moves, and how the head came to `start`; null: nothing.
+  // Searches know none (schedule/layer_solver_links.cc).
+  const LayerLinks* links = nullptr;
+  Departure before = {};
 
   // Whether routes to resume are those of a search like this one, perhaps of a layer that was a bit
   // different: then there is little to mend.

@@ -49,7 +49,7 @@ struct GreedyLayer {
 struct ChainLayer {
   uint64_t index = 0;
   JobLayer given;  // as it was added
-  CostSpec cost;
+  CostSpec cost;   // of its searches (SymmetricCost)
   LayerSize size;
   bool looks_ahead = false;  // it may be ended with the next layer in view
   bool looked_at = false;    // the layer before is ended with this one in view
@@ -60,6 +60,7 @@ struct ChainLayer {
   Point origin;
   uint64_t key = 0;  // for the predicted start
   std::unique_ptr<const WallCost> walls;
+  std::unique_ptr<const WallCost> linked_walls;  // of a layer with links: at their true cost
   std::optional<Point> finish;
   Route given_route;
   LayerOutcome outcome;  // the part about the given order
@@ -131,6 +132,7 @@ struct ChainLayer {
   std::optional<Point> alone_end;  // if that is done: where the head is then, cleaning included
   bool anchoring = false;          // anchor has been submitted
   std::optional<Point> end;        // if anchored: where the head is then, cleaning included
+  LinkSeconds departure;           // if anchored: from its last path to the next layer
   double over_alone = 0;           // if anchored: see TrueStart, after this layer
   double over_greedy = 0;          // the same
 };
@@ -143,6 +145,9 @@ using LayersInView = std::vector<ChainLayerPtr>;
 struct TrueStart {
   Point start;
   LayersInView view;
+
+  // What it takes to leave the last path of the layer before.
+  LinkSeconds departure = {};
 
   // Whether no known layer begins where the last of these ends.
   bool end_is_free = true;

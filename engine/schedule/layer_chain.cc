@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
+#include "engine/cost/link_cost.h"
 #include "engine/cost/route_cost.h"
 
 namespace traverse {
@@ -36,7 +37,7 @@ void LayerChain::AnnounceEnd() {
 
 void LayerChain::Add(JobLayer given) {
   auto layer = std::make_shared<ChainLayer>();
-  layer->cost = given.cost.value_or(spec_.cost);
+  layer->cost = SymmetricCost(given.cost.value_or(spec_.cost), given.links);
   layer->size = SizeOf(given.plan);
   layer->given = std::move(given);
   MutexLock lock(mutex_);
@@ -161,15 +162,22 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, TrueStart at) {
   const Budget::Clock::duration used = layer->used;
   const bool late = layer->search_end && Now() >= *layer->search_end;
   RunTimed(*layer, solver_.traits().serial, [&] { outcome = solver_.Anchor(*layer, at); });
-  if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
+  const bool has_links = LayerSolver::IsLinked(*layer, at.departure);
+  if (BoundsChain() && !has_links && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
-  const double over_alone = layer->alone ? at.over_alone + outcome.cost - layer->alone->cost : 0;
+  const LinkSeconds departure = layer->finish ? LinkSeconds() : outcome.departure;
+  // Costs with links cannot be compared with those of the search.
+  const bool compares_alone = layer->alone && !has_links;
+  const bool compares_greedy = layer->greedy && !has_links;
+  const double over_alone = compares_alone ? at.over_alone + outcome.cost - layer->alone->cost : 0;
   const double over_greedy =
-      layer->greedy ? at.over_greedy + outcome.cost - layer->greedy->cost : 0;
+      compares_greedy ? at.over_greedy + outcome.cost - layer->greedy->cost : 0;
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   MutexLock lock(mutex_);
   layer->end = end;
+  layer->departure = departure;
+  has_links_ = has_links_ || has_links;
   layer->over_alone = over_alone;
   layer->over_greedy = over_greedy;
   LayerEnd& learned = ends_to_learn_[layer->index];
@@ -325,7 +333,10 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   if (!start) return;
   TrueStart at{*start, {}};
   if (layer->looked_at) at.over_alone = LayerAt(index - 1)->over_alone;
-  if (!solver_.FixedStart(*layer)) at.over_greedy = LayerAt(index - 1)->over_greedy;
+  if (!solver_.FixedStart(*layer)) {
+    at.over_greedy = LayerAt(index - 1)->over_greedy;
+    at.departure = LayerAt(index - 1)->departure;
+  }
   if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
   Submit([this, layer, at] { RunAnchor(layer, at); }, *layer);
@@ -342,7 +353,7 @@ void LayerChain::DropAnchored() {
 void LayerChain::MaybeFinish() {
   const bool all_done = closed_ && pending_ == 0;
   if (finished_ || tasks_ > 0 || !(all_done || cancel_.cancelled())) return;
-  if (BoundsChain() && !bounding_chain_ && !cancel_.cancelled()) {
+  if (BoundsChain() && !has_links_ && !bounding_chain_ && !cancel_.cancelled()) {
     bounding_chain_ = true;
     Submit([this] { RunBoundChain(); }, chain_bound_.points(), added_);
     return;

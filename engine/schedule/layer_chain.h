@@ -143,8 +143,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     KnownRoutePtr known;  // null if routes are not reused
   };
   std::map<uint64_t, LayerEnd> ends_to_learn_ TRAVERSE_GUARDED_BY(mutex_);
-  ChainBound chain_bound_ TRAVERSE_GUARDED_BY(mutex_);       // of the anchored layers
-  double chain_weight_ TRAVERSE_GUARDED_BY(mutex_) = 0;      // what bounding them has of the time
+  ChainBound chain_bound_ TRAVERSE_GUARDED_BY(mutex_);   // of the anchored layers
+  double chain_weight_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // what bounding them has of the time
+  bool has_links_ TRAVERSE_GUARDED_BY(mutex_) = false;   // some layer: then the chain has no bound
   bool bounding_chain_ TRAVERSE_GUARDED_BY(mutex_) = false;  // RunBoundChain has been submitted
   std::optional<double> chain_lower_bound_ TRAVERSE_GUARDED_BY(mutex_);
   int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;

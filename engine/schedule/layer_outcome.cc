@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "engine/base/rest.h"
+#include "engine/cost/link_cost.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/cost/wall_cost.h"
@@ -27,22 +28,16 @@ Moves MovesOf(const LayerProblem& problem, const Route& route, Budget& budget) {
   Rest rest(&budget);
   Moves moves;
   if (problem.cost.kind == CostSpec::Kind::kLength) return moves;
-  Point at = problem.start;
+  const LinkCost cost(problem);
+  LinkCost::Left left = cost.Before();
   for (size_t i = 0; i < route.size(); ++i) {
     rest(4);
     if (problem.walls != nullptr && budget.Exhausted()) break;
-    const Path& path = problem.plan->paths[static_cast<size_t>(route[i].path)];
-    const Point to = EnterPoint(path, route[i].entry);
-    WallMove move;
-    if (problem.walls != nullptr) {
-      move = problem.walls->MoveOf(at, to);
-    } else {
-      move.retracts = Distance(at, to) > problem.cost.retraction_threshold_mm;
-    }
+    WallMove move = cost.To(left, route[i]);
     moves.counts.crossings += move.crosses ? 1 : 0;
     moves.counts.retractions += move.retracts && problem.cost.retraction_seconds > 0 ? 1 : 0;
     if (!move.via.empty()) moves.detours.push_back({i, std::move(move.via)});
-    at = ExitPoint(path, route[i].entry);
+    left = cost.After(route[i]);
   }
   return moves;
 }
@@ -56,10 +51,10 @@ void TellGiven(const LayerProblem& problem, const Route& given, Budget& turns,
   const Plan& plan = *problem.plan;
   LayerProblem open_ended = problem;
   open_ended.finish.reset();
-  outcome.given = MeasureTravel(plan, problem.start, given, &turns);
+  outcome.given = MeasureTravel(plan, problem.start, given, &turns, problem.links);
   outcome.cost_given = RouteCost(open_ended, given, &turns);
   outcome.moves_given = MovesOf(open_ended, given, turns).counts;
-  outcome.cleaning_given_mm = MoveMm(RouteEnd(plan, given, problem.start), problem.finish);
+  outcome.cleaning_given_mm = MoveMm(*DepartureAfter(problem, given).from, problem.finish);
 }
 
 void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, Budget& turns,
@@ -67,8 +62,10 @@ void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, 
   assert(problem.plan == &layer.plan && solution.route.size() == layer.plan.paths.size());
   const Plan& plan = layer.plan;
   outcome.start = problem.start;
-  outcome.end = RouteEnd(plan, solution.route, problem.start);
-  outcome.travel = MeasureTravel(plan, problem.start, solution.route, &turns);
+  const Departure last = DepartureAfter(problem, solution.route);
+  outcome.end = *last.from;
+  outcome.departure = last.seconds;
+  outcome.travel = MeasureTravel(plan, problem.start, solution.route, &turns, problem.links);
   outcome.cleaning_mm = MoveMm(outcome.end, problem.finish);
   const double finish_cost = problem.finish ? TravelCost(problem)(outcome.end, *problem.finish) : 0;
   outcome.cost = RouteCost(problem, solution.route, &turns) - finish_cost;
@@ -76,10 +73,13 @@ void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, 
   outcome.moves = moves.counts;
   outcome.detours = std::move(moves.detours);
   if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
-  if (problem.walls != nullptr && outcome.invalid_route.empty()) {
+  const bool is_time = problem.cost.kind == CostSpec::Kind::kTime;
+  const bool is_checked = problem.walls != nullptr || (problem.links != nullptr && is_time);
+  if (is_checked && outcome.invalid_route.empty()) {
+    const MoveClaims claims{outcome.cost, outcome.moves, outcome.detours};
     const absl::Status same =
-        ValidateMoves(plan, layer.walls, problem.cost, problem.start, solution.route,
-                      {outcome.cost, outcome.moves, outcome.detours}, &turns);
+        ValidateMoves(plan, layer.walls, problem.cost, problem.start, solution.route, claims,
+                      &turns, problem.links, problem.before.seconds);
     if (!same.ok()) outcome.invalid_route = std::string(same.message());
   }
   outcome.stop = solution.stop;

@@ -10,11 +10,18 @@ namespace traverse {
 void LayerPreparer::Prepare(ChainLayer& layer) {
   const Plan& plan = layer.given.plan;
   Budget turns = solver_.Turns();
-  if (layer.given.start) given_at_ = greedy_at_ = predicted_at_ = *layer.given.start;
+  if (layer.given.start) {
+    given_at_ = greedy_at_ = predicted_at_ = *layer.given.start;
+    given_left_ = {};
+  }
   layer.predicted_start = predicted_at_;
 
   if (layer.cost.kind == CostSpec::Kind::kTime && !layer.given.walls.empty()) {
     layer.walls = std::make_unique<const WallCost>(layer.given.walls, plan, layer.cost, &turns);
+    if (!layer.given.links.empty()) {
+      const CostSpec& cost = solver_.TrueCost(layer);
+      layer.linked_walls = std::make_unique<const WallCost>(layer.given.walls, plan, cost, &turns);
+    }
   }
   layer.origin = PlanOrigin(plan);
   if (!solver_.traits().serial) {
@@ -35,8 +42,7 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
   layer.given_route = GivenRoute(plan, &turns);
   layer.outcome.index = layer.index;
   if (turns.ExhaustedNow()) return;  // it was cancelled: nobody will look
-  TellGiven(solver_.Problem(layer, given_at_), layer.given_route, turns, layer.outcome);
-  given_at_ = layer.finish.value_or(RouteEnd(plan, layer.given_route, given_at_));
+  TellGivenOf(layer, turns);
   if (solver_.MayBeCutShort()) {
     layer.greedy = FollowGreedy(layer);
     greedy_at_ = layer.greedy->end;
@@ -44,6 +50,16 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
   layer.resumes_initial =
       solver_.ResumesInitial(solver_.Problem(layer, layer.predicted_start), layer);
   if (!solver_.traits().serial) predicted_at_ = PredictEnd(layer);
+}
+
+void LayerPreparer::TellGivenOf(ChainLayer& layer, Budget& turns) {
+  const LayerProblem problem = LayerSolver::IsLinked(layer, given_left_)
+                                   ? solver_.LinkedProblem(layer, {given_at_, given_left_})
+                                   : solver_.Problem(layer, given_at_);
+  TellGiven(problem, layer.given_route, turns, layer.outcome);
+  const Departure last = DepartureAfter(problem, layer.given_route);
+  given_at_ = layer.finish.value_or(*last.from);
+  given_left_ = layer.finish ? LinkSeconds() : last.seconds;
 }
 
 GreedyLayer LayerPreparer::FollowGreedy(const ChainLayer& layer) const {

@@ -27,13 +27,15 @@ class LayerPreparer {
   void Learn(uint64_t shape, uint64_t key, Point end) { history_.Learn(shape, key, end); }
 
  private:
+  void TellGivenOf(ChainLayer& layer, Budget& turns);
   GreedyLayer FollowGreedy(const ChainLayer& layer) const;
   Point PredictEnd(const ChainLayer& layer) const;
 
   const LayerSolver& solver_;
-  Point given_at_;      // where the head is in the given order
-  Point greedy_at_;     // and in greedy's
-  Point predicted_at_;  // where the head will probably be in the order that is found
+  Point given_at_;          // where the head is in the given order
+  LinkSeconds given_left_;  // and what it took to leave the path before
+  Point greedy_at_;         // and in greedy's
+  Point predicted_at_;      // where the head will probably be in the order that is found
   std::shared_ptr<AnchoredRoutes> anchored_;
   EndHistory history_;
   bool learned_ = false;  // a layer repeated one whose end was learned

@@ -371,9 +371,17 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
     if (!was_replaced) layer.anchored->anchored[key] = layer.known;
   }
   if (turns.ExhaustedNow()) return outcome;
-  TellFound(problem, std::move(solution), layer.given, turns, outcome);
+  if (!IsLinked(layer, at.departure)) {
+    TellFound(problem, std::move(solution), layer.given, turns, outcome);
+  } else {
+    const LayerProblem linked = LinkedProblem(layer, {at.start, at.departure});
+    ImproveLinked(linked, layer, solution);
+    BoundLinked(linked, layer, solution);
+    TellFound(linked, std::move(solution), layer.given, turns, outcome);
+  }
   layer.prepared.reset();
   layer.walls.reset();
+  layer.linked_walls.reset();
   outcome.solve_seconds += watch.Seconds();
   return outcome;
 }

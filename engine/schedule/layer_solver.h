@@ -59,6 +59,20 @@ class LayerSolver {
   // The problem of solving the layer from `start`. Refers to `layer`.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
 
+  // The cost that the caller asks for; searches have ChainLayer::cost.
+  const CostSpec& TrueCost(const ChainLayer& layer) const {
+    return layer.given.cost ? *layer.given.cost : spec_.cost;
+  }
+
+  // Whether links cost more than moves in the layer, to whose start the head came in `departure`.
+  static bool IsLinked(const ChainLayer& layer, const LinkSeconds& departure) {
+    return !layer.given.links.empty() || departure != LinkSeconds();
+  }
+
+  // The problem with all that links cost; the head came to its start as `before` says, whose `from`
+  // is set. Refers to `layer`.
+  LayerProblem LinkedProblem(const ChainLayer& layer, const Departure& before) const;
+
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
@@ -128,6 +142,9 @@ class LayerSolver {
                      const LayersInView& view, Solution& solution) const;
   bool KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,
                          Solution& solution) const;
+  // In layer_solver_links.cc.
+  void ImproveLinked(const LayerProblem& linked, const ChainLayer& layer, Solution& solution) const;
+  void BoundLinked(const LayerProblem& linked, const ChainLayer& layer, Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
                                  uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
