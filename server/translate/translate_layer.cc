@@ -14,6 +14,7 @@
 #include "server/translate/field_ranges.h"
 #include "server/translate/translate.h"
 #include "server/translate/translate_check.h"
+#include "server/translate/translate_links.h"
 #include "server/translate/translate_route.h"
 #include "server/translate/translate_walls.h"
 
@@ -252,6 +253,7 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   faults.Add(plan.status());
   if (plan.ok()) {
     result.layer.plan = *std::move(plan);
+    faults.Add(SetLinks(layer, place, budget, result.layer));
     faults.Add(SetWalls(layer, place, budget, result.layer));
     faults.Add(SetInitialRoute(layer, place, budget, result.layer));
   }
