@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
@@ -24,8 +25,8 @@ double DistanceToPiece(Point p, Point a, Point b);
 // Between two straight lines; 0 if they cross.
 double DistanceOfPieces(Point a, Point b, Point c, Point d);
 
-// True if the line from `c` to `d` crosses the other one at a point inside that. Where a line passes
-// a point at which two others meet from either side of it, it crosses one of these.
+// True if the line from `c` to `d` crosses the other one at a point inside that. Where a line
+// passes a point at which two others meet from either side of it, it crosses one of these.
 bool PiecesCross(Point a, Point b, Point c, Point d);
 
 // A straight piece of a path.
@@ -57,6 +58,14 @@ class PieceGrid {
   // `reach`; for some more than once. Stops when visit returns false.
   template <typename Visit>
   void ForEachNear(Point a, Point b, double reach, Visit visit) const {
+    ForEachCellNear(a, b, reach, [&](size_t, absl::Span<const uint32_t> in_cell) {
+      return std::all_of(in_cell.begin(), in_cell.end(), visit);
+    });
+  }
+
+  // The same cell by cell: visit(cell, indices), also for cells without pieces.
+  template <typename Visit>
+  void ForEachCellNear(Point a, Point b, double reach, Visit visit) const {
     if (empty()) return;
     const int x_end = CellX(std::max(a.x, b.x) + reach);
     const int y_end = CellY(std::max(a.y, b.y) + reach);
@@ -64,12 +73,13 @@ class PieceGrid {
       for (int x = CellX(std::min(a.x, b.x) - reach); x <= x_end; ++x) {
         const size_t cell =
             static_cast<size_t>(y) * static_cast<size_t>(columns_) + static_cast<size_t>(x);
-        for (uint32_t i = begin_[cell]; i < begin_[cell + 1]; ++i) {
-          if (!visit(entries_[i])) return;
-        }
+        const absl::Span<const uint32_t> entries = absl::MakeSpan(entries_);
+        if (!visit(cell, entries.subspan(begin_[cell], begin_[cell + 1] - begin_[cell]))) return;
       }
     }
   }
+
+  size_t cell_count() const { return static_cast<size_t>(columns_) * static_cast<size_t>(rows_); }
 
   // The same for the cells along the move from `a` to `b`.
   template <typename Visit>

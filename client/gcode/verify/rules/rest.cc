@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "absl/types/span.h"
 #include "client/gcode/verify/match/plane.h"
 #include "engine/base/disjoint_sets.h"
 
@@ -56,21 +58,47 @@ class IslandFinder {
     return std::clamp(kReachWidths * area / height_mm, kLeastReachMm, kMostReachMm);
   }
 
-  // Where crowds of pieces lie in one place, to look at all pairs would take long: then the layer
-  // is taken for one island.
+  // First the first pieces of all paths, then the second ones: most islands are whole before most
+  // pieces are looked at.
   void JoinNear() {
-    uint64_t left = kLooks + kLooksEach * grid_.pieces().size();
-    for (const Piece& piece : grid_.pieces()) {
-      if (layer_.Ended() || apart_ <= 1) return;
-      const uint32_t one = piece.path - first_;
-      grid_.ForEachNear(piece.a, piece.b, reach_[one], [&](uint32_t i) {
-        JoinIfNear(piece, grid_.pieces()[i]);
-        return --left > 0;
-      });
-      if (left > 0) continue;
-      for (int path = 1; path < static_cast<int>(reach_.size()); ++path) regions_.Join(path, 0);
-      return;
+    joined_.resize(grid_.cell_count());
+    looks_ = kLooks + kLooksEach * grid_.pieces().size();
+    std::vector<uint32_t> longer(reach_.size());  // paths with more than `k` pieces
+    std::iota(longer.begin(), longer.end(), first_);
+    for (uint32_t k = 0; !longer.empty(); ++k) {
+      std::erase_if(longer, [&](uint32_t path) { return layer_.PiecesOf(path).size() <= k; });
+      for (const uint32_t path : longer) {
+        if (layer_.Ended() || apart_ <= 1) return;
+        JoinWithNear(layer_.PiecesOf(path)[k]);
+        if (looks_ > 0) continue;
+        for (int other = 1; other < static_cast<int>(reach_.size()); ++other) {
+          regions_.Join(other, 0);
+        }
+        return;
+      }
     }
+  }
+
+  // Where crowds of pieces lie in one place, to look at all pairs would take long: then the layer
+  // is taken for one island. The pieces of a cell that are of one island are looked at together.
+  void JoinWithNear(const Piece& piece) {
+    const auto region_of = [this](uint32_t i) {
+      return static_cast<int>(grid_.pieces()[i].path - first_);
+    };
+    const uint32_t one = piece.path - first_;
+    grid_.ForEachCellNear(
+        piece.a, piece.b, reach_[one], [&](size_t cell, absl::Span<const uint32_t> in_cell) {
+          if (in_cell.empty()) return true;
+          const int first = region_of(in_cell[0]);
+          uint32_t& joined = joined_[cell];
+          while (joined < in_cell.size() && regions_.AreJoined(region_of(in_cell[joined]), first)) {
+            ++joined;
+          }
+          if (regions_.AreJoined(static_cast<int>(one), first)) in_cell.remove_prefix(joined);
+          for (const uint32_t i : in_cell) JoinIfNear(piece, grid_.pieces()[i]);
+          looks_ -= std::min<uint64_t>(looks_, in_cell.size() + 1);
+          return looks_ > 0;
+        });
   }
 
   void JoinIfNear(const Piece& piece, const Piece& other) {
@@ -160,6 +188,8 @@ class IslandFinder {
   DisjointSets regions_;
   const PieceGrid grid_;
   std::vector<double> reach_;     // [path of the layer]
+  std::vector<uint32_t> joined_;  // [cell] how many of its first pieces are of one region
+  uint64_t looks_ = 0;
   std::vector<uint32_t> island_;  // [path of the layer]
   PrintedIslands found_;
 };

@@ -127,6 +127,20 @@ TEST(VerifyRest, IslandsThatHardlyLeaveAirBetweenThemRestAlone) {
   EXPECT_EQ(islands(0.45), "");  // they touch
 }
 
+// All pairs of the loops of a crowd were looked at, and too many made the layer one island.
+TEST(VerifyRest, ACrowdOfLoopsInOnePlaceLeavesOtherIslandsApart) {
+  const auto layer = [](int z, bool crowd_first) {
+    std::string crowd;
+    for (int i = 0; i < 2000; ++i) crowd += kSquare;
+    const std::string line = Island(60, 4);
+    return absl::StrCat(";LAYER_CHANGE\nG1 Z", z, " F9000\n",
+                        crowd_first ? crowd + line : line + crowd);
+  };
+  const std::string given = "M83\n" + layer(1, true) + layer(2, true);
+  EXPECT_EQ(Rests(given, "M83\n" + layer(1, true) + layer(2, false)), "rest");
+  EXPECT_EQ(Rests(given, given), "");
+}
+
 TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
   const std::string near = Travel("X0 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
   const std::string far = Travel("X0.4 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
