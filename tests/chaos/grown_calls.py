@@ -187,8 +187,8 @@ ALL = {
     "grpc/Inspect": Grpc("Inspect"),
     "grpc/Verify": Grpc("Verify", fields=(1, 2)),
     "grpc/CreateJob": GrpcJob("CreateJob", field(1, FREE_AND_GREEDY)),
-    "job": Command("optimize", "GIVEN", "--strategy=greedy", "--json=MADE", "--quiet", of_layers=True),
-    "job_auto": Command("optimize", "GIVEN", "--deadline=1s", "--json=MADE", "--quiet", of_layers=True),
+    "job": Command("optimize", "GIVEN", "--strategy=greedy", "--json", "MADE", "--quiet", of_layers=True),
+    "job_auto": Command("optimize", "GIVEN", "--deadline=1s", "--json", "MADE", "--quiet", of_layers=True),
     "/v1/optimize": Http("/v1/optimize?deadline=30s", of_layers=True),
     "server": OfServer("--strategy=greedy"),
 }
