@@ -119,12 +119,13 @@ void LinkComposer::TravelToBoundary(const Link& link) {
   if (lift > 0) link_.Lift(z, link.lift_feed);
 }
 
-// Of a step of an arrival: as high above the layer as in the file, but not below this path, where
-// that of the file begins lower, as scarf seams do.
+// Of a step of an arrival: where this path begins, if that of the file begins there; else as high
+// above the layer as in the file. Scarf seams begin lower than their layer.
 Decimal LinkComposer::HeightBehindTravel(const LinkStep& step) const {
+  const Block& given = file_.blocks[*form_.boundary];
   if (to_.placement().block == *form_.boundary) return step.to.z;
-  const Decimal above = step.to.z - file_.blocks[*form_.boundary].last.z;
-  return std::max(to_.first().z, to_.last().z + above);
+  if (step.to.z == given.first.z) return to_.first().z;
+  return std::max(to_.first().z, to_.last().z + step.to.z - given.last.z);
 }
 
 void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
