@@ -68,9 +68,11 @@ LongestTravels LongestOf(const LayerPair& layer) {
 // before the travel: then it says nothing of the length.
 bool AcceleratesByPath(const LayerPair& layer) {
   const TraceChunk& chunk = layer.was();
+  const Tails tails(layer, true);
   absl::flat_hash_map<uint64_t, uint64_t> of_path;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    const TraceLink& traced = chunk.links[link];
+    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (move.kind != MoveKind::kTravel || !move.in_print) continue;
       const auto known = of_path.try_emplace(chunk.paths[link].acceleration, move.acceleration);

@@ -173,5 +173,24 @@ TEST(VerifySpeeds, LongTravelsAreNotUnderTheAccelerationOfShortOnes) {
             "speeds");
 }
 
+// Where an acceleration is stated before the travel to a path, it is that path's. Slicers let the
+// nozzle run dry over the end of a path: that is no travel.
+TEST(VerifySpeeds, LongTravelIsUnderTheAccelerationOfThePathThatItLeadsTo) {
+  for (const bool runs_dry : {false, true}) {
+    const auto path = [&](int x, int acceleration) {
+      const std::string dry = runs_dry ? absl::StrCat("G1 X", x + 9, "\n") : "";
+      return absl::StrCat(
+          "M204 S", acceleration, "\n",
+          Line("Internal infill", absl::StrCat("X", x, " Y0"), absl::StrCat("X", x + 8.6, " Y0")),
+          dry);
+    };
+    const std::string head = kHead + "M204 S800\n";
+    const std::string a = head + path(0, 800) + path(12, 1200) + path(100, 800) + path(300, 800);
+    const std::string b = head + path(0, 800) + path(100, 800) + path(12, 1200) + path(300, 800);
+
+    EXPECT_EQ(Broken(a, b, {}, RuleBit(VerifyRule::kSpeeds)), "") << runs_dry;
+  }
+}
+
 }  // namespace
 }  // namespace traverse::gcode
