@@ -69,12 +69,14 @@ std::vector<int> MortonOrder(const std::vector<Point>& points, Rest& rest) {
 }  // namespace
 
 NearestPointIndex::NearestPointIndex(std::vector<Point> points, Budget* budget)
-    : in_set_(points.size() + 1, 1), place_(points.size()) {
+    : count_(static_cast<int>(points.size())),
+      in_set_(points.size() + 1, 1),
+      place_(points.size()) {
   Rest rest(budget);
   if (!points.empty()) ids_ = MortonOrder(points, rest);
   while (leaves_ * kLeafSize < points.size()) leaves_ *= 2;
   boxes_.resize(2 * leaves_);
-  count_.resize(2 * leaves_);
+  least_id_.resize(2 * leaves_, kNone);
   points_.reserve(points.size());
   for (size_t place = 0; place < ids_.size(); ++place) {
     rest(8);
@@ -83,13 +85,13 @@ NearestPointIndex::NearestPointIndex(std::vector<Point> points, Budget* budget)
     place_[static_cast<size_t>(ids_[place])] = static_cast<int>(place);
     const size_t leaf = leaves_ + place / kLeafSize;
     boxes_[leaf].Add(point);
-    ++count_[leaf];
+    least_id_[leaf] = std::min(least_id_[leaf], ids_[place]);
   }
   for (size_t node = leaves_; node-- > 1;) {
     rest(4);
     boxes_[node].Add(boxes_[2 * node]);
     boxes_[node].Add(boxes_[2 * node + 1]);
-    count_[node] = count_[2 * node] + count_[2 * node + 1];
+    least_id_[node] = std::min(least_id_[2 * node], least_id_[2 * node + 1]);
   }
 }
 
@@ -97,12 +99,24 @@ void NearestPointIndex::Change(int id, int by) {
   const size_t place = static_cast<size_t>(place_[static_cast<size_t>(id)]);
   assert(in_set_[place] == (by > 0 ? 0 : 1));
   in_set_[place] = by > 0 ? 1 : 0;
+  count_ += by;
   if (!searching_) {
-    count_[1] += by;
     if (by > 0) first_ = std::min(first_, place);
     return;
   }
-  for (size_t node = leaves_ + place / kLeafSize; node > 0; node /= 2) count_[node] += by;
+  size_t node = leaves_ + place / kLeafSize;
+  least_id_[node] = LeastIdOfLeaf(node);
+  while ((node /= 2) > 0) least_id_[node] = std::min(least_id_[2 * node], least_id_[2 * node + 1]);
+}
+
+int NearestPointIndex::LeastIdOfLeaf(size_t leaf) const {
+  const size_t begin = (leaf - leaves_) * kLeafSize;
+  const size_t end = std::min(begin + kLeafSize, points_.size());
+  int least = kNone;
+  for (size_t place = begin; place < end; ++place) {
+    if (in_set_[place]) least = std::min(least, ids_[place]);
+  }
+  return least;
 }
 
 int NearestPointIndex::Nearest(Point p) const {
@@ -119,14 +133,17 @@ int NearestPointIndex::Nearest(Point p) const {
   while (opened > 0) {
     auto [node, bound] = open[--opened];
     // A box as far away as the nearest point may hold one with a smaller id.
-    if (bound > least) continue;
+    if (bound > least || (bound == least && least_id_[node] > nearest)) continue;
     while (node < leaves_) {
       Open near{2 * node, boxes_[2 * node].SquaredDistanceTo(p)};
       Open far{2 * node + 1, boxes_[2 * node + 1].SquaredDistanceTo(p)};
-      if (count_[near.node] == 0 || (count_[far.node] > 0 && far.bound < near.bound)) {
+      const int near_id = least_id_[near.node];
+      const int far_id = least_id_[far.node];
+      if (near_id == kNone ||
+          (far_id != kNone && std::pair(far.bound, far_id) < std::pair(near.bound, near_id))) {
         std::swap(near, far);
       }
-      if (count_[far.node] > 0 && far.bound <= least) open[opened++] = far;
+      if (least_id_[far.node] != kNone && far.bound <= least) open[opened++] = far;
       node = near.node;
     }
     ScanLeaf(node, p, least, nearest);
@@ -154,7 +171,7 @@ int NearestPointIndex::Any() const {
     return ids_[first_];
   }
   size_t node = 1;
-  while (node < leaves_) node = 2 * node + (count_[2 * node] > 0 ? 0 : 1);
+  while (node < leaves_) node = 2 * node + (least_id_[2 * node] != kNone ? 0 : 1);
   size_t place = (node - leaves_) * kLeafSize;
   while (!in_set_[place]) ++place;
   return ids_[place];

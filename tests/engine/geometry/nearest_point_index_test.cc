@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
+#include "tests/support/growth.h"
 
 namespace traverse {
 namespace {
@@ -72,6 +73,18 @@ TEST(NearestPointIndex, AgreesWithAScanWhilePointsLeaveAndComeBack) {
       was_in ? index.Remove(id) : index.Insert(id);
     }
   }
+}
+
+// Each search went through all that were left.
+TEST(NearestPointIndex, PointsInOnePlaceTakeNoLongerEach) {
+  const auto empty = [](int points) {
+    NearestPointIndex index(std::vector<Point>(static_cast<size_t>(points), Point{3, 3}));
+    for (int id = 0; id < points; ++id) {
+      ASSERT_EQ(index.Nearest({0, 0}), id);
+      index.Remove(id);
+    }
+  };
+  EXPECT_LT(testing::GrowthOfFour(5000, empty), testing::kSlowGrowth);
 }
 
 }  // namespace
