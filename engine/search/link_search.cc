@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -51,12 +52,18 @@ class Search {
         state_(order_, tree_, entries_),
         cost_(problem),
         queue_(tree_.path_count(), tree_.leaf_count()),
-        onward_(Index(tree_.leaf_count())),
-        backward_(onward_.size()) {}
+        onward_{std::vector<double>(Index(tree_.leaf_count())),
+                std::vector<double>(Index(tree_.leaf_count()))},
+        backward_(onward_) {}
 
   Route Run(const Route& route) {
     state_.Load(route, &budget_);
-    Measure(0, state_.last_position());
+    Rest rest(&budget_);
+    for (int i = 0; i < state_.last_position(); ++i) {
+      rest(32);
+      Measure(i);
+    }
+    Sum(0);
     for (int i = 1; i < state_.last_position(); ++i) queue_.Push(state_.leaf_at(i));
     while (!queue_.empty() && !budget_.Exhausted()) {
       const int leaf = queue_.Pop();
@@ -98,37 +105,64 @@ class Search {
     return cost_.To(left, entries_.VisitOf(to.leaf, to.entry)).cost;
   }
 
-  // The links between the places [first, last], and the sums of all up to each place behind.
-  void Measure(int first, int last) {
-    Rest rest(&budget_);
-    for (int i = first; i < last; ++i) {
-      rest(32);
-      const bool inner = i > 0 && i + 1 < state_.last_position();
-      onward_[Index(i)].link = Link(At(i), At(i + 1));
-      backward_[Index(i)].link = inner ? Link(At(i + 1, true), At(i, true)) : 0;
-    }
-    for (std::vector<Step>* steps : {&onward_, &backward_}) {
-      for (int i = first; i < state_.last_position(); ++i) {
-        (*steps)[Index(i) + 1].before = (*steps)[Index(i)].before + (*steps)[Index(i)].link;
+  // The link from `place` to the next one, and that of the same two backwards.
+  void Measure(int place) {
+    const bool inner = place > 0 && place + 1 < state_.last_position();
+    onward_.links[Index(place)] = Link(At(place), At(place + 1));
+    backward_.links[Index(place)] = inner ? Link(At(place + 1, true), At(place, true)) : 0;
+  }
+
+  // Those from `place` on have changed.
+  void Sum(int place) {
+    for (Direction* way : {&onward_, &backward_}) {
+      for (size_t i = Index(place); i + 1 < way->sums.size(); ++i) {
+        way->sums[i + 1] = way->sums[i] + way->links[i];
       }
     }
   }
 
-  double Inside(const Segment& run) const {
-    const std::vector<Step>& steps = run.reversed ? backward_ : onward_;
-    return steps[Index(run.last)].before - steps[Index(run.first)].before;
+  // What runs have inside goes with them.
+  void MoveLinks(const SegmentMove& move) {
+    const auto at = [](std::vector<double>& links, int place) { return links.begin() + place; };
+    if (move.exchanges()) {
+      for (std::vector<double>* links : {&onward_.links, &backward_.links}) {
+        std::rotate(at(*links, move.first), at(*links, move.middle), at(*links, move.last + 1));
+      }
+    }
+    int first = move.first;
+    const std::array<Segment, 2> order = move.NewOrder();
+    for (int r = 0; r < move.segment_count(); ++r) {
+      const int size = order[Index(r)].size();
+      if (order[Index(r)].reversed) {
+        std::reverse(at(onward_.links, first), at(onward_.links, first + size - 1));
+        std::reverse(at(backward_.links, first), at(backward_.links, first + size - 1));
+        std::swap_ranges(at(onward_.links, first), at(onward_.links, first + size - 1),
+                         at(backward_.links, first));
+      }
+      first += size;
+    }
   }
 
-  // What the route costs more if the run or runs between `first` and `last` come as `runs`.
-  double Delta(int first, int last, absl::Span<const Piece> runs) const {
+  double Inside(const Segment& run) const {
+    const std::vector<double>& sums = run.reversed ? backward_.sums : onward_.sums;
+    return sums[Index(run.last)] - sums[Index(run.first)];
+  }
+
+  // What the route costs more if the places [first, last] come as `runs`, without the links to and
+  // from the only path of `alone`, if it is not null and one of them.
+  double Delta(int first, int last, absl::Span<const Piece> runs, const Piece* alone) const {
     double delta = -Inside({first - 1, last + 1});
     Placed at = At(first - 1);
+    bool counts = true;
     for (const Piece& run : runs) {
+      const bool skips = &run == alone;
       const Placed begin = EnteredFirst(run);
-      delta += Link(at, begin) + Inside(run.places);
+      if (counts && !skips) delta += Link(at, begin);
+      delta += Inside(run.places);
       at = run.is_one() ? begin : At(run.places.At(run.places.size() - 1), run.places.reversed);
+      counts = !skips;
     }
-    return delta + Link(at, At(last + 1));
+    return counts ? delta + Link(at, At(last + 1)) : delta;
   }
 
   Placed EnteredFirst(const Piece& run) const {
@@ -136,20 +170,32 @@ class Search {
     return {placed.leaf, run.entry.value_or(placed.entry)};
   }
 
-  // Sets the entry of the only path of `run`, one of `runs`, that suits its place best.
-  double ChooseEntry(int first, int last, Piece& run, absl::Span<const Piece> runs) const {
-    double least = Delta(first, last, runs);
-    const int leaf = state_.leaf_at(run.places.first);
-    std::optional<int> best;
+  // The same with all links, once the only path of `alone`, which comes between `before` and
+  // `behind`, is entered where that suits it best. The delta is infinite if it cannot be a gain.
+  double ChooseEntry(double delta, Placed before, Placed behind, Piece& alone) const {
+    if (delta > -kImprovementTolerance) return std::numeric_limits<double>::infinity();
+    const int leaf = state_.leaf_at(alone.places.first);
+    double least = std::numeric_limits<double>::infinity();
     for (int e = entries_.first(leaf); e < entries_.first(leaf) + entries_.count(leaf); ++e) {
-      run.entry = e;
-      const double delta = Delta(first, last, runs);
-      if (delta >= least) continue;
-      least = delta;
-      best = e;
+      const double links = Link(before, {leaf, e}) + Link({leaf, e}, behind);
+      if (links >= least) continue;
+      least = links;
+      alone.entry = e;
     }
-    run.entry = best;
-    return least;
+    return delta + least;
+  }
+
+  // The change of cost by `runs` in the place of [first, last]; sets the entry of a run of one
+  // path.
+  double BestDelta(int first, int last, absl::Span<Piece> runs) const {
+    Piece* const alone = runs[0].is_one() ? runs.data() : &runs.back();
+    if (!alone->is_one()) return Delta(first, last, runs, nullptr);
+    const bool is_first = alone == runs.data();
+    const bool is_last = alone == &runs.back();
+    const Segment& other = is_first ? runs.back().places : runs[0].places;
+    const Placed before = is_first ? At(first - 1) : At(other.At(other.size() - 1), other.reversed);
+    const Placed behind = is_last ? At(last + 1) : At(other.At(0), other.reversed);
+    return ChooseEntry(Delta(first, last, runs, alone), before, behind, *alone);
   }
 
   // Does `move` if that makes the route cheaper, perhaps with another entry of a path alone in its
@@ -160,29 +206,31 @@ class Search {
     const std::array<Segment, 2> order = move.NewOrder();
     std::array<Piece, 2> both = {Piece{order[0], {}}, Piece{order[1], {}}};
     const absl::Span<Piece> runs = absl::MakeSpan(both).first(Index(move.segment_count()));
-    Piece* const alone = runs[0].is_one() ? runs.data() : &runs.back();
-    const double delta = alone->is_one() ? ChooseEntry(move.first, move.last, *alone, runs)
-                                         : Delta(move.first, move.last, runs);
-    if (delta > -kImprovementTolerance) return false;
-    const Placed entered = EnteredFirst(*alone);
+    if (BestDelta(move.first, move.last, runs) > -kImprovementTolerance) return false;
+    const Piece& alone = runs[0].entry ? runs[0] : runs.back();
+    const int leaf = state_.leaf_at(alone.places.first);
     state_.Apply(move);
-    if (alone->is_one()) state_.SetEntry(entered.leaf, entered.entry);
-    Measure(move.first - 1, move.last + 1);
+    if (alone.entry) state_.SetEntry(leaf, *alone.entry);
+    MoveLinks(move);
     const int middle = move.segment_count() == 2 ? move.NewMiddle() : move.first;
     for (const int behind : {move.first, middle, move.last + 1}) {
+      Measure(behind - 1);
       queue_.Push(state_.leaf_at(behind - 1));
       queue_.Push(state_.leaf_at(behind));
     }
+    Sum(move.first - 1);
     return true;
   }
 
   bool TryEntry(int position) {
     Piece run{{position, position}, {}};
-    const absl::Span<const Piece> runs = absl::MakeConstSpan(&run, 1);
-    if (ChooseEntry(position, position, run, runs) > -kImprovementTolerance) return false;
-    if (!run.entry) return false;
+    if (BestDelta(position, position, absl::MakeSpan(&run, 1)) > -kImprovementTolerance) {
+      return false;
+    }
     state_.SetEntry(state_.leaf_at(position), *run.entry);
-    Measure(position - 1, position + 1);
+    Measure(position - 1);
+    Measure(position);
+    Sum(position - 1);
     for (int i = position - 1; i <= position + 1; ++i) queue_.Push(state_.leaf_at(i));
     return true;
   }
@@ -207,32 +255,41 @@ class Search {
     // ... low | .. high | ..   and   .. | low .. | high ...   done backwards
     if (Try({Kind::kReverse, low + 1, low + 1, high})) return true;
     if (Try({Kind::kReverse, low, low, high - 1})) return true;
-    for (int run = 1; run <= kLongestRun; ++run) {
-      // ... low | .. | high .. | ...   .. low | .. | .. high | ...   and so on.
-      if (TryExchange(low + 1, high, high + run - 1)) return true;
-      if (TryExchange(low + 1, high - run + 1, high)) return true;
-      if (TryExchange(low, low + run, high - 1)) return true;
-      if (TryExchange(low - run + 1, low + 1, high - 1)) return true;
-      if (TryExchange(low, high - run + 1, high)) return true;
-      if (TryExchange(low - run + 1, low + 1, high)) return true;
+    // One of the two paths comes next to the other, or changes places with what lies between.
+    if (TryExchange(low + 1, high, high) || TryExchange(low, low + 1, high - 1) ||
+        TryExchange(low, high, high) || TryExchange(low, low + 1, high)) {
+      return true;
+    }
+    // The same of a short run that begins or ends with it.
+    for (int run = 2; run <= kLongestRun; ++run) {
+      if (TryExchange(low + 1, high, high + run - 1) ||
+          TryExchange(low + 1, high - run + 1, high) || TryExchange(low, low + run, high - 1) ||
+          TryExchange(low - run + 1, low + 1, high - 1) || TryExchange(low, high - run + 1, high) ||
+          TryExchange(low - run + 1, low + 1, high)) {
+        return true;
+      }
     }
     return false;
   }
 
-  // The runs [first, middle) and [middle, last] change places, also with one of them backwards.
+  // The runs [first, middle) and [middle, last] change places; a short one also backwards.
   bool TryExchange(int first, int middle, int last) {
     if (first < 1 || middle <= first || middle > last || last >= state_.last_position()) {
       return false;
     }
+    // One path alone is turned by its entry.
+    const auto is_short = [](int size) { return size > 1 && size <= kLongestRun; };
     return Try({Kind::kExchange, first, middle, last}) ||
-           Try({Kind::kExchangeReverseFirst, first, middle, last}) ||
-           Try({Kind::kExchangeReverseSecond, first, middle, last});
+           (is_short(middle - first) && Try({Kind::kExchangeReverseFirst, first, middle, last})) ||
+           (is_short(last - middle + 1) &&
+            Try({Kind::kExchangeReverseSecond, first, middle, last}));
   }
 
-  // The link from a place to the next one, and what all those before it cost together.
-  struct Step {
-    double link = 0;
-    double before = 0;
+  // [place] the link from there to the next one, or from the next one to it in the route backwards,
+  // and what all those before it cost together.
+  struct Direction {
+    std::vector<double> links;
+    std::vector<double> sums;
   };
 
   Budget& budget_;
@@ -244,8 +301,8 @@ class Search {
   SearchState state_;
   const LinkCost cost_;
   LeafQueue queue_;
-  std::vector<Step> onward_;    // [place]
-  std::vector<Step> backward_;  // [place] the same of the route backwards, from the next one to it
+  Direction onward_;
+  Direction backward_;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace traverse {
 // `route`, changed until no change of this kind makes it cheaper, or until the budget is exhausted:
 // a path is entered elsewhere; a run of paths is done backwards; a short run comes elsewhere, as it
 // is or backwards (2-opt and Or-opt between near paths). What a run costs backwards is known from
-// sums along the route, so each trial takes O(1) links, and each change O(paths).
+// sums along the route, so each trial takes O(1) links; a change moves numbers about, O(paths).
 // REQUIRES: `route` is valid for the problem, which has links and walls_unit 1.
 Route ImproveLinks(const LayerProblem& problem, const Route& route, Budget& budget);
 
