@@ -144,6 +144,7 @@ class LayerSolver {
                          Solution& solution) const;
   // In layer_solver_links.cc.
   void ImproveLinked(const LayerProblem& linked, const ChainLayer& layer, Solution& solution) const;
+  bool ProveLinked(const LayerProblem& linked, const ChainLayer& layer, Solution& solution) const;
   void BoundLinked(const LayerProblem& linked, const ChainLayer& layer, Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
                                  uint64_t key) const;

@@ -3,16 +3,27 @@
 // improved by its true cost here, last.
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "engine/base/tolerances.h"
 #include "engine/cost/link_cost.h"
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/lower_bound.h"
+#include "engine/proof/linked_optimum.h"
 #include "engine/schedule/layer_solver.h"
 #include "engine/search/link_search.h"
 
 namespace traverse {
+namespace {
+
+// Costs of links that an optimum may take, of 25 ns: half a minute where callers ask for a proof,
+// and as long as the search of a small layer beside another search.
+constexpr int64_t kMostLinksOfProof = 1'000'000'000;
+constexpr int64_t kMostLinksBesideSearch = 500'000;
+
+}  // namespace
 
 LayerProblem LayerSolver::LinkedProblem(const ChainLayer& layer, const Departure& before) const {
   LayerProblem problem = Problem(layer, *before.from);
@@ -45,22 +56,41 @@ void LayerSolver::ImproveLinked(const LayerProblem& linked, const ChainLayer& la
   solution.route = ImproveLinks(linked, solution.route, budget);
 }
 
+// Of a small layer: the best route, with which the solution agrees then.
+bool LayerSolver::ProveLinked(const LayerProblem& linked, const ChainLayer& layer,
+                              Solution& solution) const {
+  Budget budget = LayerBudget(layer, AnchorShare());
+  const int64_t most = strategy_->traits().serial ? kMostLinksOfProof : kMostLinksBesideSearch;
+  std::optional<Route> optimum = LinkedOptimum(linked, most, budget);
+  if (!optimum) return false;
+  const double cost = RouteCost(linked, solution.route);
+  if (RouteCost(linked, *optimum) < cost - kImprovementTolerance) {
+    solution.route = *std::move(optimum);
+  }
+  solution.stop = StopReason::kOptimal;
+  solution.lower_bound = RouteCost(linked, solution.route);
+  return true;
+}
+
 // What the searches proved holds only where they knew all. Otherwise the bound is that of a problem
 // whose links cost least.
 void LayerSolver::BoundLinked(const LayerProblem& linked, const ChainLayer& layer,
                               Solution& solution) const {
+  const StrategyTraits& traits = strategy_->traits();
+  const bool wanted = solution.lower_bound || traits.bound_effort > 0;
+  const bool has_time = wanted && !Expired(layer);
+  if (has_time && traits.searches && !traits.pure && ProveLinked(linked, layer, solution)) return;
   const LeastLinks least = LeastOf(linked);
   const double cost = RouteCost(linked, solution.route);
   const bool even = !least.moved && least.cost == layer.cost;
-  const bool wanted = solution.lower_bound || strategy_->traits().bound_effort > 0;
   if (!even) solution.lower_bound.reset();
-  if (!even && wanted && !Expired(layer)) {
+  if (!even && has_time) {
     LayerProblem bare = linked;
     bare.cost = least.cost;
     bare.links = nullptr;
     bare.walls = nullptr;
     Budget budget = LayerBudget(layer, AnchorShare());
-    const double effort = std::max(1.0, strategy_->traits().bound_effort);
+    const double effort = std::max(1.0, traits.bound_effort);
     solution.lower_bound =
         LowerBound(bare, RouteCost(bare, solution.route), nullptr, effort, budget);
   }
