@@ -257,9 +257,15 @@ TEST(Links, AreNeverProvenCheaperThanTheyCanBe) {
       const LayerOutcome& outcome = answered.layers.at(0);
       const double least = TrueCost(layer, {0, 0}, {}).Least();
       EXPECT_GE(outcome.cost, least - kRounding);
-      if (outcome.lower_bound) EXPECT_LE(*outcome.lower_bound, least + kRounding);
-      if (outcome.stop == StopReason::kOptimal) EXPECT_NEAR(outcome.cost, least, kRounding);
-      if (method.name == "exact") EXPECT_EQ(outcome.stop, StopReason::kOptimal);
+      if (outcome.lower_bound) {
+        EXPECT_LE(*outcome.lower_bound, least + kRounding);
+      }
+      if (outcome.stop == StopReason::kOptimal) {
+        EXPECT_NEAR(outcome.cost, least, kRounding);
+      }
+      if (method.name == "exact") {
+        EXPECT_EQ(outcome.stop, StopReason::kOptimal);
+      }
       proven += outcome.stop == StopReason::kOptimal ? 1 : 0;
       if (method.name != "auto" || least == 0) continue;
       ++searched;

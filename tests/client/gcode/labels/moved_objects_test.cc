@@ -148,7 +148,9 @@ TEST(MovedObjects, AreTravelledToAsFastAsTheyAre) {
     if (absl::StartsWith(line, "EXCLUDE_OBJECT_START")) object = line.substr(line.size() - 1);
     if (absl::StartsWith(line, "M220 S9")) speed = line.substr(7);
     const bool travels = absl::StartsWith(line, "G1 X") && !absl::StrContains(line, " E");
-    if (travels && !object.empty()) EXPECT_EQ(speed, object) << line;
+    if (travels && !object.empty()) {
+      EXPECT_EQ(speed, object) << line;
+    }
     if (absl::StartsWith(line, "EXCLUDE_OBJECT_END")) object.clear();
   }
 }
