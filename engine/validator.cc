@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rest.h"
+#include "engine/validator_links.h"
 
 namespace traverse {
 namespace {
@@ -191,12 +192,7 @@ TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route, Bud
       split.rasters_mm += length;
     }
     const int exit = path.kind == Path::Kind::kOpen ? 1 - visit.entry : visit.entry;
-    at = path.points[static_cast<size_t>(exit)];
-    if (links != nullptr && !links->empty()) {
-      const std::vector<Departure>& known = (*links)[static_cast<size_t>(visit.path)].departures;
-      const size_t which = known.size() > 1 ? static_cast<size_t>(exit) : 0;
-      if (!known.empty() && known[which].from) at = *known[which].from;
-    }
+    at = LeavingAt(links, visit.path, exit).from.value_or(path.points[static_cast<size_t>(exit)]);
     from = path.kind;
   }
   return split;

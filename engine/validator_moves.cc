@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
+#include "engine/validator_links.h"
 
 namespace traverse {
 namespace {
@@ -265,18 +266,6 @@ class MoveCheck {
   Range retractions_;
 };
 
-Departure LeavingAt(const PathLinks& links, int exit) {
-  const std::vector<Departure>& all = links.departures;
-  if (all.empty()) return {};
-  return all.size() > 1 ? all[static_cast<size_t>(exit)] : all.front();
-}
-
-LinkSeconds ArrivingAt(const PathLinks& links, int entry) {
-  const std::vector<LinkSeconds>& all = links.arrivals;
-  if (all.empty()) return {};
-  return all.size() > 1 ? all[static_cast<size_t>(entry)] : all.front();
-}
-
 }  // namespace
 
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
@@ -288,29 +277,22 @@ absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const Cost
   size_t next = 0;
   Point at = start;
   LinkSeconds leaving = before;
-  const bool has_links = links != nullptr && !links->empty();
   for (size_t i = 0; i < route.size(); ++i) {
     if (budget != nullptr && budget->Exhausted() && budget->cancelled()) return absl::OkStatus();
-    const auto path_number = static_cast<size_t>(route[i].path);
-    const Path& path = plan.paths[path_number];
+    const Path& path = plan.paths[static_cast<size_t>(route[i].path)];
     const bool leads_around = next < claims.detours.size() && claims.detours[next].visit == i;
     const Detour* detour = leads_around ? &claims.detours[next++] : nullptr;
     const Point to = path.points[static_cast<size_t>(route[i].entry)];
     LinkSeconds ends = leaving;
-    if (has_links) {
-      const LinkSeconds arriving = ArrivingAt((*links)[path_number], route[i].entry);
-      ends.open += arriving.open;
-      ends.retracted += arriving.retracted;
-    }
+    const LinkSeconds arriving = ArrivingAt(links, route[i].path, route[i].entry);
+    ends.open += arriving.open;
+    ends.retracted += arriving.retracted;
     if (const absl::Status fault = check.Add(at, to, detour, ends); !fault.ok()) {
       return absl::Status(fault.code(), absl::StrCat("route[", i, "]: ", fault.message()));
     }
     const int exit = path.kind == Path::Kind::kOpen ? 1 - route[i].entry : route[i].entry;
-    at = path.points[static_cast<size_t>(exit)];
-    leaving = {};
-    if (!has_links) continue;
-    const Departure departure = LeavingAt((*links)[path_number], exit);
-    at = departure.from.value_or(at);
+    const Departure departure = LeavingAt(links, route[i].path, exit);
+    at = departure.from.value_or(path.points[static_cast<size_t>(exit)]);
     leaving = departure.seconds;
   }
   if (next != claims.detours.size()) {
