@@ -61,22 +61,38 @@ LinkCost::Left LinkCost::After(const Visit& visit) const {
   return {departure.from.value_or(exit), departure.seconds};
 }
 
-WallMove LinkCost::To(const Left& left, const Visit& visit) const {
-  assert(problem_.walls_unit == 1);
-  const Point to = EnterPoint(problem_.plan->paths[static_cast<size_t>(visit.path)], visit.entry);
-  WallMove move;
-  if (problem_.walls != nullptr) {
-    move = problem_.walls->MoveOf(left.at, to);
-  } else {
-    move.length_mm = Distance(left.at, to);
-    move.retracts = !travel_.is_length() && move.length_mm > problem_.cost.retraction_threshold_mm;
-    move.cost = travel_.OfLength(move.length_mm);
-  }
-  if (problem_.links == nullptr || travel_.is_length()) return move;
+Point LinkCost::EnterPointOf(const Visit& visit) const {
+  return EnterPoint(problem_.plan->paths[static_cast<size_t>(visit.path)], visit.entry);
+}
+
+// Of departure and arrival.
+double LinkCost::SecondsOf(const Left& left, const Visit& visit, bool retracts) const {
+  if (problem_.links == nullptr || travel_.is_length()) return 0;
   const LinkSeconds arrival = ArrivalOf(*problem_.links, visit);
-  move.cost +=
-      move.retracts ? left.seconds.retracted + arrival.retracted : left.seconds.open + arrival.open;
+  return retracts ? left.seconds.retracted + arrival.retracted : left.seconds.open + arrival.open;
+}
+
+WallMove LinkCost::MoveTo(const Left& left, const Visit& visit) const {
+  const Point to = EnterPointOf(visit);
+  if (problem_.walls != nullptr) return problem_.walls->MoveOf(left.at, to);
+  WallMove move;
+  move.length_mm = Distance(left.at, to);
+  move.retracts = !travel_.is_length() && move.length_mm > problem_.cost.retraction_threshold_mm;
+  move.cost = travel_.OfLength(move.length_mm);
   return move;
+}
+
+double LinkCost::To(const Left& left, const Visit& visit) const {
+  assert(problem_.walls_unit == 1);
+  if (problem_.walls == nullptr) return AtLeastTo(left, visit);
+  const WallCost::Priced move = problem_.walls->Price(left.at, EnterPointOf(visit));
+  return move.cost + SecondsOf(left, visit, move.retracts);
+}
+
+double LinkCost::AtLeastTo(const Left& left, const Visit& visit) const {
+  const double length_mm = Distance(left.at, EnterPointOf(visit));
+  const bool retracts = length_mm > problem_.cost.retraction_threshold_mm;
+  return travel_.OfLength(length_mm) + SecondsOf(left, visit, retracts);
 }
 
 CostSpec SymmetricCost(CostSpec spec, const LayerLinks& links) {

@@ -31,8 +31,12 @@ class LinkCost {
   Left Before() const { return {problem_.start, problem_.before.seconds}; }
   Left After(const Visit& visit) const;
 
-  // The move from there to the path of `visit`. Its cost is that of the whole link, in mm or s.
-  WallMove To(const Left& left, const Visit& visit) const;
+  // The move from there to the path of `visit`.
+  WallMove MoveTo(const Left& left, const Visit& visit) const;
+
+  // What the whole link costs, in mm or s; and what it does at least, as if there were no walls.
+  double To(const Left& left, const Visit& visit) const;
+  double AtLeastTo(const Left& left, const Visit& visit) const;
 
   // The move to the problem's finish. The departure before it counts nowhere, as the move itself.
   double ToFinish(const Left& left) const {
@@ -40,6 +44,9 @@ class LinkCost {
   }
 
  private:
+  Point EnterPointOf(const Visit& visit) const;
+  double SecondsOf(const Left& left, const Visit& visit, bool retracts) const;
+
   const LayerProblem problem_;
   const TravelCost travel_;
 };

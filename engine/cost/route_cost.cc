@@ -37,7 +37,7 @@ double LinkedRouteCost(const LayerProblem& problem, const Route& route, Budget* 
   for (const Visit& visit : route) {
     rest(8);
     if (asks_often && budget->Exhausted() && budget->cancelled()) return sum;
-    sum += cost.To(left, visit).cost;
+    sum += cost.To(left, visit);
     left = cost.After(visit);
   }
   return sum + cost.ToFinish(left);

@@ -195,23 +195,25 @@ int64_t WallCost::work() const {
   return (first_ != nullptr ? first_->work() : 0) + (second_ != nullptr ? second_->work() : 0);
 }
 
-double WallCost::Compute(Point a, Point b) const {
+WallCost::Priced WallCost::Compute(Point a, Point b) const {
   work_ += kWorkOfCrossing;
-  if (detours_) return MoveOf(a, b).cost;
+  const auto priced = [](const WallMove& move) { return Priced{move.cost, move.retracts}; };
+  if (detours_) return priced(MoveOf(a, b));
   const EndFacts ends = FactsOf(a, b);
-  if (const KnownMove* known = FindKnown(a, b, ends)) return Done(*known, a, b).cost;
-  return Straight(a, b, ends, grid_.Crosses(a, b)).cost;
+  if (const KnownMove* known = FindKnown(a, b, ends)) return priced(Done(*known, a, b));
+  return priced(Straight(a, b, ends, grid_.Crosses(a, b)));
 }
 
-double WallCost::operator()(Point a, Point b) const {
-  if (two_layers_) return OfTwoLayers(a, b);
+WallCost::Priced WallCost::Price(Point a, Point b) const {
+  assert(!two_layers_);
   if (known_.empty()) known_.resize(places_);
   ++work_;
   if (Less(b, a)) std::swap(a, b);
   const uint64_t hash = Mix(Mix(Mix(Mix(1, a.x), a.y), b.x), b.y);
   Known& known = known_[(hash >> 40) & (places_ - 1)];
-  if (known.cost < 0 || !(known.a == a) || !(known.b == b)) known = {a, b, Compute(a, b)};
-  return known.cost;
+  const bool is_known = known.move.cost >= 0 && known.a == a && known.b == b;
+  if (!is_known) known = {a, b, Compute(a, b)};
+  return known.move;
 }
 
 }  // namespace traverse

@@ -36,7 +36,7 @@ struct WallMove {
   std::vector<Point> via;  // bends of the detour around walls; empty if the move is straight
 };
 
-// Remembers what it was asked, so it must not be shared between threads. Memory: 40 bytes for each
+// Remembers what it was asked, so it must not be shared between threads. Memory: 48 bytes for each
 // of up to 32,768 moves, or 65,536 with detours, from the first question on.
 class WallCost {
  public:
@@ -52,8 +52,18 @@ class WallCost {
   WallCost(const WallCost* first, const WallCost* second,
            const std::vector<std::pair<Point, Point>>& second_points, const CostSpec& spec);
 
-  // The cost in s of the move from `a` to `b`, the same in both directions.
-  double operator()(Point a, Point b) const;
+  // What a move costs in s, and whether it retracts.
+  struct Priced {
+    double cost = 0;
+    bool retracts = false;
+  };
+
+  // Of the move from `a` to `b`, the same in both directions. REQUIRES for Price: this is not of
+  // two layers.
+  double operator()(Point a, Point b) const {
+    return two_layers_ ? OfTwoLayers(a, b) : Price(a, b).cost;
+  }
+  Priced Price(Point a, Point b) const;
 
   // The same, with how the move is made.
   WallMove MoveOf(Point a, Point b) const;
@@ -72,7 +82,7 @@ class WallCost {
  private:
   struct Known {
     Point a, b;
-    double cost = -1;  // negative: unknown
+    Priced move = {.cost = -1};  // negative: unknown
   };
 
   // What is special about a point.
@@ -100,7 +110,7 @@ class WallCost {
   const KnownMove* FindKnown(Point a, Point b, const EndFacts& ends) const;
   WallMove Done(const KnownMove& known, Point a, Point b) const;
   WallMove Straight(Point a, Point b, const EndFacts& ends, bool crosses) const;
-  double Compute(Point a, Point b) const;
+  Priced Compute(Point a, Point b) const;
   double OfTwoLayers(Point a, Point b) const;
 
   const CostSpec spec_;

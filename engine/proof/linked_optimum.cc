@@ -70,7 +70,9 @@ class Optimum {
       double least = std::numeric_limits<double>::infinity();
       int before = -1;
       for (const End& end : from) {
-        const double cost = end.cost + cost_.To(end.left, visit).cost;
+        if (end.cost + cost_.AtLeastTo(end.left, visit) >= least) continue;
+        if (budget_.Exhausted()) return;
+        const double cost = end.cost + cost_.To(end.left, visit);
         if (cost >= least) continue;
         least = cost;
         before = end.step;

@@ -33,7 +33,7 @@ Moves MovesOf(const LayerProblem& problem, const Route& route, Budget& budget) {
   for (size_t i = 0; i < route.size(); ++i) {
     rest(4);
     if (problem.walls != nullptr && budget.Exhausted()) break;
-    WallMove move = cost.To(left, route[i]);
+    WallMove move = cost.MoveTo(left, route[i]);
     moves.counts.crossings += move.crosses ? 1 : 0;
     moves.counts.retractions += move.retracts && problem.cost.retraction_seconds > 0 ? 1 : 0;
     if (!move.via.empty()) moves.detours.push_back({i, std::move(move.via)});

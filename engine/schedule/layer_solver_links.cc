@@ -63,12 +63,13 @@ bool LayerSolver::ProveLinked(const LayerProblem& linked, const ChainLayer& laye
   const int64_t most = strategy_->traits().serial ? kMostLinksOfProof : kMostLinksBesideSearch;
   std::optional<Route> optimum = LinkedOptimum(linked, most, budget);
   if (!optimum) return false;
-  const double cost = RouteCost(linked, solution.route);
-  if (RouteCost(linked, *optimum) < cost - kImprovementTolerance) {
+  Budget turns = Turns();
+  const double cost = RouteCost(linked, solution.route, &turns);
+  if (RouteCost(linked, *optimum, &turns) < cost - kImprovementTolerance) {
     solution.route = *std::move(optimum);
   }
   solution.stop = StopReason::kOptimal;
-  solution.lower_bound = RouteCost(linked, solution.route);
+  solution.lower_bound = RouteCost(linked, solution.route, &turns);
   return true;
 }
 
@@ -81,7 +82,8 @@ void LayerSolver::BoundLinked(const LayerProblem& linked, const ChainLayer& laye
   const bool has_time = wanted && !Expired(layer);
   if (has_time && traits.searches && !traits.pure && ProveLinked(linked, layer, solution)) return;
   const LeastLinks least = LeastOf(linked);
-  const double cost = RouteCost(linked, solution.route);
+  Budget turns = Turns();
+  const double cost = RouteCost(linked, solution.route, &turns);
   const bool even = !least.moved && least.cost == layer.cost;
   if (!even) solution.lower_bound.reset();
   if (!even && has_time) {
@@ -92,7 +94,7 @@ void LayerSolver::BoundLinked(const LayerProblem& linked, const ChainLayer& laye
     Budget budget = LayerBudget(layer, AnchorShare());
     const double effort = std::max(1.0, traits.bound_effort);
     solution.lower_bound =
-        LowerBound(bare, RouteCost(bare, solution.route), nullptr, effort, budget);
+        LowerBound(bare, RouteCost(bare, solution.route, &turns), nullptr, effort, budget);
   }
   if (solution.lower_bound) {
     *solution.lower_bound = std::clamp(*solution.lower_bound + least.seconds, 0.0, cost);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "absl/types/span.h"
-#include "engine/base/rest.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/link_cost.h"
 #include "engine/cost/neighbor_lists.h"
@@ -58,9 +57,8 @@ class Search {
 
   Route Run(const Route& route) {
     state_.Load(route, &budget_);
-    Rest rest(&budget_);
     for (int i = 0; i < state_.last_position(); ++i) {
-      rest(32);
+      if (budget_.Exhausted()) return route;
       Measure(i);
     }
     Sum(0);
@@ -96,13 +94,20 @@ class Search {
     return {leaf, turns ? entries_.Reversed(leaf, entry) : entry};
   }
 
+  // How the head leaves. REQUIRES: `from` is not the finish.
+  LinkCost::Left After(Placed from) const {
+    if (from.leaf == tree_.start()) return cost_.Before();
+    return cost_.After(entries_.VisitOf(from.leaf, from.entry));
+  }
+
   // REQUIRES: `from` is not the finish, `to` is not the start.
   double Link(Placed from, Placed to) const {
-    const LinkCost::Left left = from.leaf == tree_.start()
-                                    ? cost_.Before()
-                                    : cost_.After(entries_.VisitOf(from.leaf, from.entry));
-    if (to.leaf == tree_.finish()) return cost_.ToFinish(left);
-    return cost_.To(left, entries_.VisitOf(to.leaf, to.entry)).cost;
+    if (to.leaf == tree_.finish()) return cost_.ToFinish(After(from));
+    return cost_.To(After(from), entries_.VisitOf(to.leaf, to.entry));
+  }
+  double LeastLink(Placed from, Placed to) const {
+    if (to.leaf == tree_.finish()) return 0;
+    return cost_.AtLeastTo(After(from), entries_.VisitOf(to.leaf, to.entry));
   }
 
   // The link from `place` to the next one, and that of the same two backwards.
@@ -171,18 +176,20 @@ class Search {
   }
 
   // The same with all links, once the only path of `alone`, which comes between `before` and
-  // `behind`, is entered where that suits it best. The delta is infinite if it cannot be a gain.
+  // `behind`, is entered where that suits it best. Infinite unless it is a gain.
   double ChooseEntry(double delta, Placed before, Placed behind, Piece& alone) const {
-    if (delta > -kImprovementTolerance) return std::numeric_limits<double>::infinity();
     const int leaf = state_.leaf_at(alone.places.first);
-    double least = std::numeric_limits<double>::infinity();
+    double least = -delta - kImprovementTolerance;  // what the two links may cost
     for (int e = entries_.first(leaf); e < entries_.first(leaf) + entries_.count(leaf); ++e) {
-      const double links = Link(before, {leaf, e}) + Link({leaf, e}, behind);
+      const Placed placed{leaf, e};
+      if (LeastLink(before, placed) + LeastLink(placed, behind) >= least) continue;
+      if (budget_.Exhausted()) break;
+      const double links = Link(before, placed) + Link(placed, behind);
       if (links >= least) continue;
       least = links;
       alone.entry = e;
     }
-    return delta + least;
+    return alone.entry ? delta + least : std::numeric_limits<double>::infinity();
   }
 
   // The change of cost by `runs` in the place of [first, last]; sets the entry of a run of one
@@ -202,7 +209,7 @@ class Search {
   // run.
   bool Try(const SegmentMove& move) {
     if (move.first < 1 || move.last >= state_.last_position()) return false;
-    if (!state_.Allows(move)) return false;
+    if (budget_.Exhausted() || !state_.Allows(move)) return false;
     const std::array<Segment, 2> order = move.NewOrder();
     std::array<Piece, 2> both = {Piece{order[0], {}}, Piece{order[1], {}}};
     const absl::Span<Piece> runs = absl::MakeSpan(both).first(Index(move.segment_count()));
