@@ -62,9 +62,10 @@ class Optimum {
 
   Ends DoPath(int p, const Ends& from) {
     const Path& path = problem_.plan->paths[static_cast<size_t>(p)];
+    const size_t entries = ExitCount(path);
+    links_left_ -= static_cast<int64_t>(from.size() * entries);
     Ends ends;
     const auto enter = [&](int entry) {
-      links_left_ -= static_cast<int64_t>(from.size());
       if (IsOver()) return;
       const Visit visit{p, entry};
       double least = std::numeric_limits<double>::infinity();
@@ -81,8 +82,7 @@ class Optimum {
       steps_.push_back({visit, before});
     };
     std::for_each(path.allowed.begin(), path.allowed.end(), enter);
-    const int entries = path.one_way ? 1 : static_cast<int>(path.points.size());
-    for (int entry = 0; path.allowed.empty() && entry < entries; ++entry) enter(entry);
+    for (size_t e = 0; path.allowed.empty() && e < entries; ++e) enter(static_cast<int>(e));
     return IsOver() ? Ends() : ends;
   }
 

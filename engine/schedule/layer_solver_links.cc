@@ -18,9 +18,9 @@
 namespace traverse {
 namespace {
 
-// Costs of links that an optimum may take, of 25 ns: half a minute where callers ask for a proof,
+// Costs of links that an optimum may take, of 25 ns: some seconds where callers ask for a proof,
 // and as long as the search of a small layer beside another search.
-constexpr int64_t kMostLinksOfProof = 1'000'000'000;
+constexpr int64_t kMostLinksOfProof = 200'000'000;
 constexpr int64_t kMostLinksBesideSearch = 500'000;
 
 }  // namespace
