@@ -106,6 +106,13 @@ CostSpec SymmetricCost(CostSpec spec, const LayerLinks& links) {
   return spec;
 }
 
+LayerWalls SymmetricWalls(LayerWalls walls, double retraction_seconds) {
+  for (KnownMove& move : walls.known) {
+    if (move.retracts) move.seconds += retraction_seconds;
+  }
+  return walls;
+}
+
 LeastLinks LeastOf(const LayerProblem& problem) {
   LeastLinks least{problem.cost};
   const TravelCost travel(problem);

@@ -12,6 +12,7 @@
 #include "engine/model/links.h"
 #include "engine/model/point.h"
 #include "engine/model/route.h"
+#include "engine/model/walls.h"
 
 namespace traverse {
 
@@ -54,6 +55,10 @@ class LinkCost {
 // The cost with which searches that know none but the same both ways come closest to that of
 // `links`: a retraction costs what it does on an average.
 CostSpec SymmetricCost(CostSpec spec, const LayerLinks& links);
+
+// The walls of such a search, in which a retraction costs `retraction_seconds` more: known moves
+// that retract state what they take without what departure and arrival take longer for it.
+LayerWalls SymmetricWalls(LayerWalls walls, double retraction_seconds);
 
 // A problem without links and walls, which bounds one with links: no route of that costs less than
 // the best of this and `seconds` (which may be negative; mm, if the cost is a length).

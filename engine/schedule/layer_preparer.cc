@@ -1,7 +1,9 @@
 #include "engine/schedule/layer_preparer.h"
 
 #include <optional>
+#include <utility>
 
+#include "engine/cost/link_cost.h"
 #include "engine/cost/route_cost.h"
 #include "engine/schedule/layer_outcome.h"
 
@@ -17,10 +19,15 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
   layer.predicted_start = predicted_at_;
 
   if (layer.cost.kind == CostSpec::Kind::kTime && !layer.given.walls.empty()) {
-    layer.walls = std::make_unique<const WallCost>(layer.given.walls, plan, layer.cost, &turns);
-    if (!layer.given.links.empty()) {
-      const CostSpec& cost = solver_.TrueCost(layer);
-      layer.linked_walls = std::make_unique<const WallCost>(layer.given.walls, plan, cost, &turns);
+    const CostSpec& cost = solver_.TrueCost(layer);
+    auto given = std::make_unique<const WallCost>(layer.given.walls, plan, cost, &turns);
+    if (layer.given.links.empty()) {
+      layer.walls = std::move(given);
+    } else {
+      layer.linked_walls = std::move(given);
+      const LayerWalls walls = SymmetricWalls(
+          layer.given.walls, layer.cost.retraction_seconds - cost.retraction_seconds);
+      layer.walls = std::make_unique<const WallCost>(walls, plan, layer.cost, &turns);
     }
   }
   layer.origin = PlanOrigin(plan);

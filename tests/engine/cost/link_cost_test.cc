@@ -59,6 +59,14 @@ TEST_F(LinkCosts, AreSearchedWithTheMiddleRetraction) {
   EXPECT_DOUBLE_EQ(SymmetricCost(Time(), links_).retraction_seconds, 3 + (0.15 + 1) / 2);
 }
 
+TEST_F(LinkCosts, AreSearchedWithItOnKnownMovesToo) {
+  LayerWalls walls;
+  walls.known = {KnownMove{0, 1, 2, false, true}, KnownMove{1, 0, 2, true, false}};
+  const LayerWalls searched = SymmetricWalls(walls, 0.5);
+  EXPECT_DOUBLE_EQ(searched.known[0].seconds, 2.5);
+  EXPECT_DOUBLE_EQ(searched.known[1].seconds, 2);
+}
+
 TEST_F(LinkCosts, AreBoundedByTheLeast) {
   const LeastLinks least = LeastOf(problem_);
   EXPECT_TRUE(least.moved);

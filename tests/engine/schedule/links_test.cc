@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -292,6 +293,36 @@ TEST(Links, AreNoDearerThanOnTheKnownRoute) {
       }
     }
   }
+}
+
+// What a retraction takes may be stated as the price of all of them, or as the departure of each
+// path; and known moves with it, or without. Both are searched alike.
+TEST(Links, ThatStateARetractionAreSearchedAsOne) {
+  constexpr double kRetraction = 0.25;
+  int known_moves = 0;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    WalledProblem walled = RandomWalledProblem(seed, {.max_paths = 12}, seed % 2 == 0);
+    JobLayer priced;
+    priced.plan = walled.owned.plan();
+    priced.cost = walled.problem().cost;
+    priced.cost->retraction_seconds = kRetraction;
+    priced.walls = std::move(walled.walls);
+    priced.walls.retracted.clear();
+    JobLayer linked = priced;
+    linked.cost->retraction_seconds = 0;
+    linked.links.assign(priced.plan.paths.size(), PathLinks{{Departure{{}, {0, kRetraction}}}, {}});
+    for (KnownMove& move : priced.walls.known) {
+      known_moves += move.retracts ? 1 : 0;
+      move.seconds = std::round(move.seconds * 8) / 8;
+    }
+    linked.walls.known = priced.walls.known;
+    for (KnownMove& move : priced.walls.known) move.seconds += move.retracts ? kRetraction : 0;
+    const Method pure = {"ni2opt", {{"pure", "true"}}};
+    EXPECT_EQ(Answers(pure, {linked}).layers.at(0).route,
+              Answers(pure, {priced}).layers.at(0).route);
+  }
+  EXPECT_GT(known_moves, 30);
 }
 
 // Where the way back is dear, the path is left at its other end.
