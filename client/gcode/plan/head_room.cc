@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/gcode/model/arc.h"
+#include "client/gcode/model/outline.h"
 
 namespace traverse::gcode {
 namespace {
@@ -111,9 +112,12 @@ HeadRoom::HeadRoom(const GcodeFile& file) {
   if (passes.empty() || file.ends.empty()) return;
   Point low = file.ends.front();
   Point high = low;
-  for (const Point& end : file.ends) {
-    low = {std::min(low.x, end.x), std::min(low.y, end.y)};
-    high = {std::max(high.x, end.x), std::max(high.y, end.y)};
+  for (const Block& block : file.blocks) {
+    const Outline outline = OutlineOf(file, block);
+    for (const Point& point : outline.shape()) {
+      low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+      high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+    }
   }
   room_of_.assign(file.layers.size(), nullptr);
   Follower follower(file, low, high);

@@ -104,6 +104,23 @@ TEST(HeadRoom, MovesThatAreNotClearAreCounted) {
   EXPECT_EQ(blocked("G1 Z5\nG1 X23 Y20\nG1 Z.2\nG1 X36 Y23\n"), 2);
 }
 
+TEST(HeadRoom, AllOfWhatIsPrintedStandsNotOnlyTheEndsOfItsSegments) {
+  // A line from Y10 to Y30 that is printed one way, and a circle of two arcs from X40 to X60.
+  std::string print = "M83\n";
+  for (int layer = 1; layer <= 5; ++layer) {
+    absl::StrAppend(&print, LayerAt(0.2 * layer), LineAt(20, 10, 30), "G1 X40 Y30 F9000\n",
+                    "G3 X60 I10 J0 E1 F1800\nG3 X40 I-10 J0 E1\n");
+  }
+  const auto file =
+      Read(print + "G1 Z6\nG1 X0 Y0\nG1 X90 Y50\n" + LayerAt(.2) + LineAt(80, 28, 32));
+  const HeadRoom room(*file);
+  ASSERT_NE(room.Of(5), nullptr);
+
+  EXPECT_FALSE(room.Of(5)->IsClear({10, 12}, .2, {30, 12}, .2));
+  EXPECT_FALSE(room.Of(5)->IsClear({50, 10}, .2, {50, 25}, .2));
+  EXPECT_FALSE(room.Of(5)->IsClear({50, 35}, .2, {50, 50}, .2));
+}
+
 TEST(HeadRoom, OfALargePlateTakesLittleMemory) {
   // Towers all over a plate of 400 mm, then 1,500 low layers that go down again and again.
   std::string print = "M83\n";
