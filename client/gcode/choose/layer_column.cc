@@ -29,7 +29,9 @@ PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint
   std::string text;
   column.writer->WriteTravel(choice.order.back(), column.choices[to].order.front(), choice.behind,
                              text);
-  return Measure(file, text, choice.behind, &column.writer->walls(), column.writer->room());
+  // Nothing is in the way of what the file itself does.
+  const Room* room = from > 0 || to > 0 ? column.writer->room() : nullptr;
+  return Measure(file, text, choice.behind, &column.writer->walls(), room);
 }
 
 bool IsRefused(const LayerColumn& before, uint32_t from, const LayerColumn& column, uint32_t to) {

@@ -18,6 +18,51 @@ constexpr RoomHeight kSlack = 2;
 constexpr double kMostCells = 1 << 20;
 constexpr double kMostInARow = 1 << 12;
 
+// Calls take(column, row, z_mm) for each cell of the box that a straight move passes, one after the
+// other, with the lowest height that it has there; ends where that returns false. So a move passes
+// the same cells whenever it is asked about.
+template <typename Take>
+void ForEachCell(const RoomBox& box, Point a, double z_a_mm, Point b, double z_b_mm, Take take) {
+  // Straight down it is at both ends.
+  if (a == b) z_a_mm = z_b_mm = std::min(z_a_mm, z_b_mm);
+  const double from[] = {(a.x - box.low.x) / box.cell_mm, (a.y - box.low.y) / box.cell_mm};
+  const double delta[] = {(b.x - a.x) / box.cell_mm, (b.y - a.y) / box.cell_mm};
+  const int size[] = {box.columns, box.rows};
+  double begin = 0;  // shares of the move
+  double end = 1;
+  int at[] = {0, 0};
+  for (size_t axis = 0; axis < 2; ++axis) {
+    if (delta[axis] == 0) {
+      if (from[axis] < 0 || from[axis] >= size[axis]) return;
+      continue;
+    }
+    const double at_low = -from[axis] / delta[axis];
+    const double at_high = (size[axis] - from[axis]) / delta[axis];
+    begin = std::max(begin, std::min(at_low, at_high));
+    end = std::min(end, std::max(at_low, at_high));
+  }
+  if (!(begin <= end)) return;
+  for (size_t axis = 0; axis < 2; ++axis) {
+    const double entered = std::floor(from[axis] + delta[axis] * begin);
+    at[axis] = static_cast<int>(std::clamp(entered, 0.0, size[axis] - 1.0));
+  }
+  const double rise = z_b_mm - z_a_mm;
+  // The share at which the cell is left along that axis.
+  const auto left_at = [&](size_t axis) {
+    if (delta[axis] == 0) return 2.0;
+    return (at[axis] + (delta[axis] > 0 ? 1 : 0) - from[axis]) / delta[axis];
+  };
+  while (true) {
+    const double next[] = {left_at(0), left_at(1)};
+    const size_t axis = next[0] < next[1] ? 0 : 1;
+    const double leave = std::min(next[axis], end);
+    if (!take(at[0], at[1], z_a_mm + rise * (rise > 0 ? begin : leave)) || leave >= end) return;
+    at[axis] += delta[axis] > 0 ? 1 : -1;
+    if (at[axis] < 0 || at[axis] >= size[axis]) return;
+    begin = leave;
+  }
+}
+
 }  // namespace
 
 RoomHeight InRoomHeight(double mm) {
@@ -33,18 +78,12 @@ RoomHeight RoomMap::At(int column, int row) const {
 
 bool RoomMap::IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const {
   if (empty() || InRoomHeight(std::min(z_a_mm, z_b_mm)) + kSlack >= highest_) return true;
-  // Straight down it is at both ends.
-  if (a == b) z_a_mm = z_b_mm = std::min(z_a_mm, z_b_mm);
-  const double pieces = std::min(std::ceil(Distance(a, b) * 3 / cell_mm_), 3 * kMostCells);
-  for (double i = 0; i <= pieces; ++i) {
-    const double share = pieces > 0 ? i / pieces : 0;
-    const double x = (a.x + (b.x - a.x) * share - low_.x) / cell_mm_;
-    const double y = (a.y + (b.y - a.y) * share - low_.y) / cell_mm_;
-    if (!(x >= 0 && y >= 0 && x < kMostInARow && y < kMostInARow)) continue;
-    const double z = z_a_mm + (z_b_mm - z_a_mm) * share;
-    if (InRoomHeight(z) + kSlack < At(static_cast<int>(x), static_cast<int>(y))) return false;
-  }
-  return true;
+  bool clear = true;
+  ForEachCell(box_, a, z_a_mm, b, z_b_mm, [&](int column, int row, double z_mm) {
+    clear = InRoomHeight(z_mm) + kSlack >= At(column, row);
+    return clear;
+  });
+  return clear;
 }
 
 void RoomBuilder::Window::Add(int column, int row) {
@@ -60,9 +99,10 @@ RoomBuilder::RoomBuilder(Point low, Point high, const HeadPart& part) : part_(pa
   part_.cell_mm = std::max({part.cell_mm, std::sqrt(width * depth / kMostCells),
                             width / kMostInARow, depth / kMostInARow});
   const double cell = part_.cell_mm;
-  low_ = {std::floor(low.x / cell) * cell, std::floor(low.y / cell) * cell};
-  columns_ = static_cast<int>((high.x - low_.x) / cell) + 1;
-  rows_ = static_cast<int>((high.y - low_.y) / cell) + 1;
+  box_.cell_mm = cell;
+  box_.low = {std::floor(low.x / cell) * cell, std::floor(low.y / cell) * cell};
+  box_.columns = static_cast<int>((high.x - box_.low.x) / cell) + 1;
+  box_.rows = static_cast<int>((high.y - box_.low.y) / cell) + 1;
   reach_ = static_cast<int>((part.most_mm + part.slack_mm) / cell);
   for (int row = -reach_; row <= reach_; ++row) {
     for (int column = -reach_; column <= reach_; ++column) {
@@ -76,62 +116,30 @@ RoomBuilder::RoomBuilder(Point low, Point high, const HeadPart& part) : part_(pa
   }
   std::stable_sort(offsets_.begin(), offsets_.end(),
                    [](const Offset& a, const Offset& b) { return a.cells < b.cells; });
-  const auto cells = static_cast<size_t>(columns_) * static_cast<size_t>(rows_);
+  const auto cells = static_cast<size_t>(box_.columns) * static_cast<size_t>(box_.rows);
   top_.assign(cells, 0);
   now_.assign(cells, 0);
   lowest_.assign(cells, kNever);
   need_.assign(cells, 0);
 }
 
-// take(column, row, share) for points on the piece, as near to each other as cells are wide, or
-// nearer. What is outside of the box is left out.
-template <typename Take>
-void RoomBuilder::ForEachCell(Point a, Point b, Take take) const {
-  const double cell = part_.cell_mm;
-  double begin = 0;
-  double end = 1;
-  const auto clip = [&](double from, double delta, double size) {
-    if (delta == 0) {
-      if (from < 0 || from >= size) end = -1;
-      return;
-    }
-    const double at_low = -from / delta;
-    const double at_high = (size - from) / delta;
-    begin = std::max(begin, std::min(at_low, at_high));
-    end = std::min(end, std::max(at_low, at_high));
-  };
-  const double x = (a.x - low_.x) / cell;
-  const double y = (a.y - low_.y) / cell;
-  const double dx = (b.x - a.x) / cell;
-  const double dy = (b.y - a.y) / cell;
-  clip(x, dx, columns_);
-  clip(y, dy, rows_);
-  if (!(begin <= end)) return;
-  const auto pieces = static_cast<int>(std::ceil(std::hypot(dx, dy) * (end - begin) * 3));
-  for (int i = 0; i <= pieces; ++i) {
-    const double share = pieces > 0 ? begin + (end - begin) * i / pieces : begin;
-    const int column = std::clamp(static_cast<int>(x + dx * share), 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(y + dy * share), 0, rows_ - 1);
-    take(column, row, share);
-  }
-}
-
 void RoomBuilder::Print(Point a, Point b, double z_mm) {
   const RoomHeight z = InRoomHeight(z_mm);
-  ForEachCell(a, b, [&](int column, int row, double) {
+  ForEachCell(box_, a, z_mm, b, z_mm, [&](int column, int row, double) {
     RoomHeight& top = now_[Index(column, row)];
     top = std::max(top, z);
     printed_.Add(column, row);
+    return true;
   });
 }
 
 void RoomBuilder::Visit(Point a, double z_a_mm, Point b, double z_b_mm) {
-  if (a == b) z_a_mm = z_b_mm = std::min(z_a_mm, z_b_mm);
   pass_low_ = std::min(pass_low_, InRoomHeight(std::min(z_a_mm, z_b_mm)));
-  ForEachCell(a, b, [&](int column, int row, double share) {
+  ForEachCell(box_, a, z_a_mm, b, z_b_mm, [&](int column, int row, double z_mm) {
     RoomHeight& lowest = lowest_[Index(column, row)];
-    lowest = std::min(lowest, InRoomHeight(z_a_mm + (z_b_mm - z_a_mm) * share));
+    lowest = std::min(lowest, InRoomHeight(z_mm));
     visited_.Add(column, row);
+    return true;
   });
 }
 
@@ -202,12 +210,11 @@ void RoomBuilder::Forget() {
 
 RoomMap RoomBuilder::EndPass(int64_t& steps) {
   RoomMap map;
-  map.low_ = low_;
-  map.cell_mm_ = part_.cell_mm;
+  map.box_ = box_;
   const RoomHeight least = std::max(InRoomHeight(part_.least_excess_mm), kLevel);
   if (!visited_.empty() && highest_ > pass_low_ + least) {
-    const int row_end = std::min(visited_.row_end + reach_, rows_);
-    const int column_end = std::min(visited_.column_end + reach_, columns_);
+    const int row_end = std::min(visited_.row_end + reach_, box_.rows);
+    const int column_end = std::min(visited_.column_end + reach_, box_.columns);
     for (int row = std::max(visited_.row_begin - reach_, 0); row < row_end && steps > 0; ++row) {
       for (int column = std::max(visited_.column_begin - reach_, 0); column < column_end;
            ++column) {

@@ -32,6 +32,14 @@ struct HeadPart {
   double slack_mm = 0;
 };
 
+// Cells, from `low` on.
+struct RoomBox {
+  Point low;
+  double cell_mm = 1;
+  int columns = 1;
+  int rows = 1;
+};
+
 // The heights, where they matter. Memory: 0.5 KB for 256 cells.
 class RoomMap {
  public:
@@ -49,8 +57,7 @@ class RoomMap {
 
   RoomHeight At(int column, int row) const;
 
-  Point low_;
-  double cell_mm_ = 1;
+  RoomBox box_;
   RoomHeight highest_ = 0;
   absl::flat_hash_map<uint32_t, Tile> tiles_;  // by column << 16 | row of tiles
 };
@@ -88,10 +95,9 @@ class RoomBuilder {
     RoomHeight least = 0;  // what may stand so far away, above the tip
   };
 
-  template <typename Take>
-  void ForEachCell(Point a, Point b, Take take) const;
   size_t Index(int column, int row) const {
-    return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
+    return static_cast<size_t>(row) * static_cast<size_t>(box_.columns) +
+           static_cast<size_t>(column);
   }
   RoomHeight LowestAt(int column, int row) const;
   void Spread(int column, int row, int64_t& steps);
@@ -99,9 +105,7 @@ class RoomBuilder {
   void Forget();
 
   HeadPart part_;
-  Point low_;
-  int columns_ = 1;
-  int rows_ = 1;
+  RoomBox box_;
   int reach_ = 0;                   // cells
   std::vector<Offset> offsets_;     // nearest first
   std::vector<RoomHeight> top_;     // what stood before the pass

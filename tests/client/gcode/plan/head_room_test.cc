@@ -104,6 +104,29 @@ TEST(HeadRoom, MovesThatAreNotClearAreCounted) {
   EXPECT_EQ(blocked("G1 Z5\nG1 X23 Y20\nG1 Z.2\nG1 X36 Y23\n"), 2);
 }
 
+TEST(HeadRoom, WhereTheFileLeadsItMayBeLedAgainInAnyDirection) {
+  // Through a tower of 1 mm, from outside of what is printed.
+  std::string tower = "M83\n";
+  for (int layer = 1; layer <= 5; ++layer) {
+    absl::StrAppend(&tower, LayerAt(0.2 * layer));
+    for (double x = 20; x < 30; x += 0.4) absl::StrAppend(&tower, LineAt(x, 20, 30));
+  }
+  for (double x = 18; x < 28; x += 0.37) {
+    const std::string travel = absl::StrCat("G1 X", x, " Y5\nG1 X", 46 - x, " Y60\n");
+    const auto file =
+        Read(tower + LayerAt(.2) + "G1 Z.6\n" + travel + "G1 Z.2\n" + LineAt(10, 60, 65));
+    const HeadRoom room(*file);
+    ASSERT_NE(room.Of(5), nullptr);
+    const auto blocked = [&](const std::string& text) {
+      const PartStart start = StartBehind(*file, file->blocks[file->layers[4].end_block - 1]);
+      return Measure(*file, text, start, nullptr, room.Of(5)).blocked;
+    };
+
+    EXPECT_EQ(blocked("G1 Z.6 F9000\n" + travel), 0) << travel;
+    EXPECT_GT(blocked(absl::StrCat("G1 Z.6 F9000\nG1 X", x - 1, " Y5\nG1 X", 46 - x, " Y60\n")), 0);
+  }
+}
+
 TEST(HeadRoom, AllOfWhatIsPrintedStandsNotOnlyTheEndsOfItsSegments) {
   // A line from Y10 to Y30 that is printed one way, and a circle of two arcs from X40 to X60.
   std::string print = "M83\n";
