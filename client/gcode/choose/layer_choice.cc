@@ -56,6 +56,8 @@ class LayerChooser::Impl {
     rests_.SetGiven(TimedRow(columns_, false));
     const auto fill = [this](size_t i) { gcode::FillTravels(file_, columns_[i], columns_[i + 1]); };
     ParallelFor(columns_.size() - 1, threads_, fill);
+    for (size_t layer = 1; layer < columns_.size(); ++layer) AddPastObstacles(layer);
+    ParallelFor(columns_.size() - 1, threads_, fill);
     AddRested();
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillTravels(i + 1); });
   }
@@ -246,6 +248,27 @@ class LayerChooser::Impl {
     NoteBlocked(found_[layer], column);
     const auto orders = MergedOrders(*column.writer, found_[layer], rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
+  }
+
+  // Where something stands in the way to the begin of a choice, or from the end of one to this
+  // layer, and does not in the file, adds the same choice with the file's begin or end.
+  void AddPastObstacles(size_t layer) {
+    LayerColumn& column = columns_[layer];
+    LayerColumn& before = columns_[layer - 1];
+    if (column.writer->room() == nullptr) return;
+    std::vector<LayerOrder> begun;
+    for (size_t c = 1; c < column.choices.size(); ++c) {
+      if (column.totals.Travel(0, c).blocked == 0) continue;
+      begun.push_back(BegunAsSliced(column.choices[c].order, column.given_order()));
+    }
+    std::vector<LayerOrder> ended;
+    for (size_t b = 1; b * column.choices.size() < column.totals.travels.size(); ++b) {
+      if (column.totals.Travel(b, 0).blocked == 0) continue;
+      ended.push_back(EndedAsSliced(before.choices[b].order, before.given_order()));
+    }
+    for (const LayerOrder& order : begun) filler_.Add(order, layer, column);
+    for (const LayerOrder& order : ended) filler_.Add(order, layer - 1, before);
+    column.blocked |= !begun.empty() || !ended.empty();
   }
 
   void FillTravels(size_t layer) {
