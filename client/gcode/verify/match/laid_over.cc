@@ -4,10 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/match/piece_tree.h"
+
 namespace traverse::gcode {
 namespace {
 
-constexpr double kGridMm = 1.0;
 constexpr double kMostShare = 0.75;  // of the usual flow: more fills what is left between lines
 constexpr double kWidestMm = 2.5;    // the distance of lines from each other, at most
 constexpr double kUsualMm = 0.4;     // where no two lie side by side
@@ -48,8 +49,8 @@ class LaidLayer {
  public:
   explicit LaidLayer(const std::vector<LaidPath>& paths)
       : paths_(paths),
-        grid_(AllOf(paths), kGridMm),
-        looks_(kLooks + kLooksPerPiece * grid_.pieces().size()),
+        tree_(AllOf(paths)),
+        looks_(kLooks + kLooksPerPiece * tree_.pieces().size()),
         spacing_(UsualSpacing()) {}
 
   // True if most of the path lies over earlier ones.
@@ -98,7 +99,7 @@ class LaidLayer {
     std::vector<double> distances;
     double seen = 0;
     double next = filament / kPoints / 2;
-    uint32_t index = 0;  // of the piece, in the grid
+    uint32_t index = 0;  // of the piece, in the tree
     for (const LaidPath& path : paths_) {
       for (const Piece& piece : path.pieces) {
         const double own = DistanceOf(piece.a, piece.b) * path.filament_per_mm;
@@ -118,12 +119,12 @@ class LaidLayer {
     return *middle;
   }
 
-  // The distance from `p`, which lies on `line`, to the nearest solid piece before it in the grid
+  // The distance from `p`, which lies on `line`, to the nearest solid piece before it in the tree
   // that runs beside it; kWidestMm if there is none.
   double BesideEarlier(Point p, const Piece& line, uint32_t index) {
     double least = kWidestMm;
-    grid_.ForEachNear(p, p, kWidestMm, [&](uint32_t i) {
-      const Piece& other = grid_.pieces()[i];
+    tree_.ForEachNear(p, p, kWidestMm, [&](uint32_t i) {
+      const Piece& other = tree_.pieces()[i];
       if (looks_ == 0) return false;
       --looks_;
       if (i >= index || !paths_[other.path].solid) return true;
@@ -151,8 +152,8 @@ class LaidLayer {
     const double length = DistanceOf(line.a, line.b);
     const Point along{(line.b.x - line.a.x) / length, (line.b.y - line.a.y) / length};
     Sides sides{reach, reach, reach, reach};
-    grid_.ForEachNear(p, p, reach, [&](uint32_t i) {
-      const Piece& other = grid_.pieces()[i];
+    tree_.ForEachNear(p, p, reach, [&](uint32_t i) {
+      const Piece& other = tree_.pieces()[i];
       if (looks_ == 0) return false;
       --looks_;
       if (other.path < path) Include(other, p, along, sides);
@@ -185,7 +186,7 @@ class LaidLayer {
   }
 
   const std::vector<LaidPath>& paths_;
-  const PieceGrid grid_;
+  const PieceTree tree_;
   size_t looks_;
   const double spacing_;
 };

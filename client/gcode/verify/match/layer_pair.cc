@@ -14,7 +14,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kCellMm = 1.0;
 constexpr double kEndSlackMm = 0.25;       // of travel, where it may touch the walls that it joins
 constexpr double kLongestTailMm = 1.0;     // of one that leaves its path
 constexpr double kStraightCosine = 0.996;  // of 5 degrees
@@ -123,7 +122,7 @@ SlicerSettings ReadSettings(std::string_view text) {
 
 LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
                      const WorkLimit& limit)
-    : was_(was), is_(is), layer_(layer), limit_(limit), outer_walls_({}, kCellMm) {
+    : was_(was), is_(is), layer_(layer), limit_(limit) {
   const TraceLayer& of_was = was.layers[layer];
   const TraceLayer& of_is = is.layers[layer];
   assert(of_was.end_section - of_was.first_section == of_is.end_section - of_is.first_section);
@@ -143,7 +142,7 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
     if (Outer(piece.path)) outer.push_back(piece);
   }
   JoinEqual(outer);
-  outer_walls_ = PieceGrid(std::move(outer), kCellMm);
+  outer_walls_ = PieceTree(std::move(outer));
   Match();
 }
 
@@ -181,19 +180,19 @@ void LayerPair::LearnShapes() {
   }
   if (loops.empty()) return;
   JoinEqual(loops);
-  const PieceGrid grid(std::move(loops), kCellMm);
+  const PieceTree tree(std::move(loops));
   for (uint32_t path = first_path_; path < end_was_; ++path) {
     Facts& facts = FactsOf(path);
     if (!IsLoopToName(path)) continue;
     if (Ended()) return;
-    const bool inside = IsInside(path, grid);
+    const bool inside = IsInside(path, tree);
     facts.path_class = inside ? PathClass::kInnerWall : PathClass::kOuterWall;
     facts.outer = !inside;
   }
 }
 
 // True if at most points of the loop another one lies beside it, on its right.
-bool LayerPair::IsInside(uint32_t path, const PieceGrid& loops) const {
+bool LayerPair::IsInside(uint32_t path, const PieceTree& loops) const {
   constexpr size_t kPlaces = 24;
   const absl::Span<const Piece> pieces = PiecesOf(path);
   const size_t step = std::max<size_t>(1, pieces.size() / kPlaces);

@@ -9,6 +9,7 @@
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/types/span.h"
+#include "client/gcode/verify/match/piece_tree.h"
 #include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/visits.h"
 #include "client/gcode/verify/trace/trace.h"
@@ -72,7 +73,7 @@ class LayerPair {
   const std::vector<Piece>& pieces() const { return pieces_; }
 
   // The outer walls of the layer, including overhanging ones.
-  const PieceGrid& outer_walls() const { return outer_walls_; }
+  const PieceTree& outer_walls() const { return outer_walls_; }
 
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
@@ -139,7 +140,7 @@ class LayerPair {
   void LearnFacts();
   bool IsLoopToName(uint32_t path) const;
   void LearnShapes();
-  bool IsInside(uint32_t path, const PieceGrid& loops) const;
+  bool IsInside(uint32_t path, const PieceTree& loops) const;
   void LearnIroning();
   void Match();
 
@@ -153,7 +154,7 @@ class LayerPair {
   uint32_t end_is_ = 0;
   std::vector<Facts> facts_;  // [path - first_path_]
   std::vector<Piece> pieces_;
-  PieceGrid outer_walls_;
+  PieceTree outer_walls_;
   std::vector<Visit> visits_;
   std::vector<size_t> section_begin_;  // in visits_
   absl::flat_hash_set<uint64_t> known_;

@@ -7,7 +7,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kWallCellMm = 2;
 constexpr double kLeastRowMm = 0.2;
 
 // Pieces may be entered in so many rows each, on the average.
@@ -25,7 +24,7 @@ bool UsesOneTool(const LayerPair& layer) {
 
 }  // namespace
 
-LayerShape::LayerShape(const LayerPair& layer) : walls_({}, 1) {
+LayerShape::LayerShape(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
   z_mm_ = was.paths[layer.first_path_was()].z_mm;
   one_tool_ = UsesOneTool(layer);
@@ -45,7 +44,7 @@ LayerShape::LayerShape(const LayerPair& layer) : walls_({}, 1) {
     rounds_.push_back({pieces.back().b, pieces.front().a, path});
   }
   filament_per_mm_ = length > 0 ? filament / length : 0;
-  walls_ = PieceGrid(std::move(walls), kWallCellMm);
+  walls_ = PieceTree(std::move(walls));
   if (rounds_.empty()) return;
   double high_y = rounds_[0].a.y;
   low_y_ = high_y;

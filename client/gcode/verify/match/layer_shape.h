@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "client/gcode/verify/match/layer_pair.h"
+#include "client/gcode/verify/match/piece_tree.h"
 #include "client/gcode/verify/match/plane.h"
 
 namespace traverse::gcode {
 
 class LayerShape {
  public:
-  LayerShape() : walls_({}, 1) {}  // nothing
+  LayerShape() {}  // nothing
   explicit LayerShape(const LayerPair& layer);
 
   double z_mm() const { return z_mm_; }
@@ -37,7 +38,7 @@ class LayerShape {
   double z_mm_ = 0;
   bool one_tool_ = true;
   double filament_per_mm_ = 0;
-  PieceGrid walls_;
+  PieceTree walls_;
   std::vector<bool> closed_;   // [piece of walls_]
   std::vector<Piece> rounds_;  // closed walls, with what closes them
   double low_y_ = 0;

@@ -1,5 +1,6 @@
 #include "client/gcode/verify/match/plane.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -91,41 +92,6 @@ void JoinEqual(std::vector<Piece>& pieces) {
     }
   }
   pieces.resize(kept);
-}
-
-PieceGrid::PieceGrid(std::vector<Piece> pieces, double cell_mm)
-    : pieces_(std::move(pieces)), cell_mm_(cell_mm) {
-  if (pieces_.empty()) return;
-  low_ = pieces_[0].a;
-  Point high = low_;
-  double length = 0;  // along x and y
-  for (const Piece& piece : pieces_) {
-    length += std::abs(piece.b.x - piece.a.x) + std::abs(piece.b.y - piece.a.y);
-    for (const Point p : {piece.a, piece.b}) {
-      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-  }
-  // No more cells than a few for each piece, however far apart they lie.
-  const double most = 4.0 * static_cast<double>(pieces_.size()) + 1024;
-  const double area = (high.x - low_.x + cell_mm_) * (high.y - low_.y + cell_mm_);
-  cell_mm_ = std::max(cell_mm_, std::sqrt(area / most));
-  cell_mm_ = std::max(cell_mm_, std::max(high.x - low_.x, high.y - low_.y) / most);
-  // Nor more cells that pieces meet than some for each.
-  constexpr double kMostOfPiece = 64;
-  cell_mm_ = std::max(cell_mm_, length / (kMostOfPiece * static_cast<double>(pieces_.size())));
-  columns_ = static_cast<int>((high.x - low_.x) / cell_mm_) + 1;
-  rows_ = static_cast<int>((high.y - low_.y) / cell_mm_) + 1;
-  begin_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
-  for (const Piece& piece : pieces_) {
-    ForEachCell(piece.a, piece.b, [this](size_t cell) { ++begin_[cell + 1]; });
-  }
-  for (size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
-  entries_.resize(begin_.back());
-  std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (uint32_t i = 0; i < pieces_.size(); ++i) {
-    ForEachCell(pieces_[i].a, pieces_[i].b, [&](size_t cell) { entries_[next[cell]++] = i; });
-  }
 }
 
 }  // namespace traverse::gcode

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -62,53 +63,37 @@ Group GroupOf(PathClass path_class, const SlicerSettings& settings) {
 }
 
 // Pieces by the cells that they meet or come within kNearMm / 2 of: two pieces within kNearMm share
-// a cell. Cells are larger where pieces are many or long, so that memory and time are linear.
+// a cell. Cells are larger where pieces are long, so that memory and time are linear.
 class Cells {
  public:
   explicit Cells(const std::vector<Piece>& pieces) {
-    if (pieces.empty()) return;
-    low_ = pieces[0].a;
-    Point high = low_;
     double length = 0;
     for (const Piece& piece : pieces) {
-      for (const Point p : {piece.a, piece.b}) {
-        low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      }
       length += std::abs(piece.b.x - piece.a.x) + std::abs(piece.b.y - piece.a.y);
     }
-    const double most = kMostEach * static_cast<double>(pieces.size()) + kMostAlways;
-    const double width = high.x - low_.x + 2 * kNearMm;
-    const double height = high.y - low_.y + 2 * kNearMm;
-    cell_mm_ = std::max(
-        {kCellMm, std::sqrt(width * height / most), std::max(width, height) / most, length / most});
-    low_ = {low_.x - kNearMm, low_.y - kNearMm};
-    columns_ = static_cast<int>(width / cell_mm_) + 1;
-    begin_.assign(static_cast<size_t>(columns_) * (static_cast<size_t>(height / cell_mm_) + 1) + 1,
-                  0);
-    for (const Piece& piece : pieces) {
-      ForEachOf(piece, [this](size_t cell) { ++begin_[cell + 1]; });
-    }
-    for (size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
-    entries_.resize(begin_.back());
-    std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
+    cell_mm_ =
+        std::max(kCellMm, length / (kMostEach * static_cast<double>(pieces.size()) + kMostAlways));
+    absl::flat_hash_map<std::pair<int, int>, size_t> numbers;  // by row and column
     for (uint32_t i = 0; i < pieces.size(); ++i) {
-      ForEachOf(pieces[i], [&](size_t cell) { entries_[next[cell]++] = i; });
+      ForEachOf(pieces[i], [&](int row, int column) {
+        const auto [number, added] = numbers.try_emplace({row, column}, cells_.size());
+        if (added) cells_.emplace_back();
+        cells_[number->second].push_back(i);
+      });
     }
   }
 
-  // Calls visit(indices), in ascending order, for each cell with pieces.
-  template <typename Visit>
-  void ForEach(Visit visit) const {
-    for (size_t cell = 0; cell + 1 < begin_.size(); ++cell) {
-      const size_t count = begin_[cell + 1] - begin_[cell];
-      if (count > 0) visit(absl::Span<const uint32_t>(entries_.data() + begin_[cell], count));
-    }
-  }
+  // The pieces of each cell, in ascending order.
+  const std::vector<std::vector<uint32_t>>& cells() const { return cells_; }
 
  private:
   static constexpr double kMostEach = 64;
   static constexpr double kMostAlways = 1 << 18;
+
+  // What lies farther away than can be counted is in the last one.
+  int Number(double mm) const {
+    return static_cast<int>(std::clamp(std::floor(mm / cell_mm_), -2e9, 2e9));
+  }
 
   // Row by row: the cells from where the piece, with what is near it, enters the row to where it
   // leaves it.
@@ -118,26 +103,21 @@ class Cells {
     const auto [a, b] =
         piece.a.y <= piece.b.y ? std::pair(piece.a, piece.b) : std::pair(piece.b, piece.a);
     const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
-    const int last = static_cast<int>((b.y + kReach - low_.y) / cell_mm_);
-    for (int row = static_cast<int>((a.y - kReach - low_.y) / cell_mm_); row <= last; ++row) {
-      const double y_low = std::clamp(low_.y + row * cell_mm_ - kReach, a.y, b.y);
-      const double y_high = std::clamp(low_.y + (row + 1) * cell_mm_ + kReach, a.y, b.y);
+    const int last = Number(b.y + kReach);
+    for (int row = Number(a.y - kReach); row <= last; ++row) {
+      const double y_low = std::clamp(row * cell_mm_ - kReach, a.y, b.y);
+      const double y_high = std::clamp((row + 1) * cell_mm_ + kReach, a.y, b.y);
       const double one = b.y > a.y ? a.x + (y_low - a.y) * slope : a.x;
       const double other = b.y > a.y ? a.x + (y_high - a.y) * slope : b.x;
-      const int end = static_cast<int>((std::max(one, other) + kReach - low_.x) / cell_mm_);
-      int column = static_cast<int>((std::min(one, other) - kReach - low_.x) / cell_mm_);
-      for (; column <= end; ++column) {
-        visit(static_cast<size_t>(row) * static_cast<size_t>(columns_) +
-              static_cast<size_t>(column));
+      const int end = Number(std::max(one, other) + kReach);
+      for (int column = Number(std::min(one, other) - kReach); column <= end; ++column) {
+        visit(row, column);
       }
     }
   }
 
-  std::vector<uint32_t> begin_;  // [cell] in entries_
-  std::vector<uint32_t> entries_;
-  Point low_;
-  double cell_mm_ = 1;
-  int columns_ = 1;
+  std::vector<std::vector<uint32_t>> cells_;
+  double cell_mm_;
 };
 
 class OrderKeeper {
@@ -253,9 +233,9 @@ class OrderKeeper {
     }
     pairs_left_ = kPairsAlways + kMostPairs * pieces.size();
     reported_.assign(place_.size(), false);
-    const Cells cells(pieces);
+    const Cells near(pieces);
     std::array<Earlier, kGroups> earlier;
-    cells.ForEach([&](absl::Span<const uint32_t> cell) {
+    for (const std::vector<uint32_t>& cell : near.cells()) {
       if (layer_.Ended()) return;
       for (Earlier& of_group : earlier) of_group.pieces.clear();
       for (const uint32_t i : cell) {
@@ -272,7 +252,7 @@ class OrderKeeper {
         if (own.pieces.empty() || PlaceOf(path) > PlaceOf(own.last_path)) own.last_path = path;
         own.pieces.push_back(i);
       }
-    });
+    }
   }
 
   // A path of `earlier` near piece `i` that is printed after it; UINT32_MAX if there is none.
@@ -327,13 +307,13 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
               section_of.begin() + (was.end_path - first), k);
   }
   if (!moved) return;
-  const PieceGrid grid(std::vector<Piece>(layer.pieces()), kCellMm);
+  const PieceTree tree(layer.pieces());
   const auto section = [&](const Piece& piece) { return section_of[piece.path - first]; };
-  for (const Piece& piece : grid.pieces()) {
+  for (const Piece& piece : tree.pieces()) {
     if (layer.Ended()) return;
     bool found = false;
-    grid.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
-      const Piece& other = grid.pieces()[i];
+    tree.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
+      const Piece& other = tree.pieces()[i];
       found = other.path < piece.path && section(other) > section(piece) &&
               DistanceOfPieces(piece.a, piece.b, other.a, other.b) <= kNearMm;
       if (!found) return true;

@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
-#include "client/gcode/verify/match/plane.h"
+#include "client/gcode/verify/match/piece_tree.h"
 #include "engine/base/disjoint_sets.h"
 
 namespace traverse::gcode {
@@ -21,7 +21,6 @@ constexpr double kLeastShare = 0.95;
 // Rounding of sums of times.
 constexpr double kSlackSeconds = 1e-3;
 
-constexpr double kPlaceMm = 1;
 constexpr double kLeastReachMm = 0.52;
 constexpr double kMostReachMm = 4;
 constexpr uint64_t kLooks = 100'000;  // at pairs of pieces, and for each piece
@@ -36,7 +35,7 @@ class IslandFinder {
         first_(layer.first_path_was()),
         apart_(layer.end_path_was() - first_),
         regions_(static_cast<int>(apart_)),
-        grid_(layer.pieces(), kPlaceMm) {
+        tree_(layer.pieces()) {
     for (uint32_t path = first_; path < layer.end_path_was(); ++path) {
       reach_.push_back(ReachOf(layer.was().paths[path], height_mm));
     }
@@ -61,8 +60,8 @@ class IslandFinder {
   // First the first pieces of all paths, then the second ones: most islands are whole before most
   // pieces are looked at.
   void JoinNear() {
-    joined_.resize(grid_.cell_count());
-    looks_ = kLooks + kLooksEach * grid_.pieces().size();
+    whole_.resize(tree_.node_count());
+    looks_ = kLooks + kLooksEach * tree_.pieces().size();
     std::vector<uint32_t> longer(reach_.size());  // paths with more than `k` pieces
     std::iota(longer.begin(), longer.end(), first_);
     for (uint32_t k = 0; !longer.empty(); ++k) {
@@ -80,25 +79,42 @@ class IslandFinder {
   }
 
   // Where crowds of pieces lie in one place, to look at all pairs would take long: then the layer
-  // is taken for one island. The pieces of a cell that are of one island are looked at together.
+  // is taken for one island. Pieces beside each other that are of one island are passed by
+  // together.
   void JoinWithNear(const Piece& piece) {
-    const auto region_of = [this](uint32_t i) {
-      return static_cast<int>(grid_.pieces()[i].path - first_);
-    };
-    const uint32_t one = piece.path - first_;
-    grid_.ForEachCellNear(
-        piece.a, piece.b, reach_[one], [&](size_t cell, absl::Span<const uint32_t> in_cell) {
-          if (in_cell.empty()) return true;
-          const int first = region_of(in_cell[0]);
-          uint32_t& joined = joined_[cell];
-          while (joined < in_cell.size() && regions_.AreJoined(region_of(in_cell[joined]), first)) {
-            ++joined;
-          }
-          if (regions_.AreJoined(static_cast<int>(one), first)) in_cell.remove_prefix(joined);
-          for (const uint32_t i : in_cell) JoinIfNear(piece, grid_.pieces()[i]);
-          looks_ -= std::min<uint64_t>(looks_, in_cell.size() + 1);
+    const auto one = static_cast<int>(piece.path - first_);
+    tree_.ForEachLeafNear(
+        piece.a, piece.b, reach_[piece.path - first_],
+        [&](uint32_t node) { return !IsWhole(node) || !regions_.AreJoined(one, RegionOf(node)); },
+        [&](uint32_t leaf) {
+          const absl::Span<const uint32_t> indices = tree_.IndicesOf(leaf);
+          for (const uint32_t i : indices) JoinIfNear(piece, tree_.pieces()[i]);
+          looks_ -= std::min<uint64_t>(looks_, indices.size() + 1);
           return looks_ > 0;
         });
+  }
+
+  // The region of some piece within the node: of all of them, if it is whole.
+  int RegionOf(uint32_t node) const {
+    return static_cast<int>(tree_.pieces()[tree_.IndicesOf(node)[0]].path - first_);
+  }
+
+  // True if all pieces within a node are of one region; false also where nobody has looked at one
+  // of the nodes within it since that is so.
+  bool IsWhole(uint32_t node) {
+    if (whole_[node]) return true;
+    if (tree_.IsLeaf(node)) {
+      const absl::Span<const uint32_t> indices = tree_.IndicesOf(node);
+      whole_[node] = std::all_of(indices.begin(), indices.end(), [&](uint32_t i) {
+        const auto region = static_cast<int>(tree_.pieces()[i].path - first_);
+        return regions_.AreJoined(region, RegionOf(node));
+      });
+    } else {
+      const uint32_t second = tree_.SecondOf(node);
+      whole_[node] = whole_[node + 1] && whole_[second] &&
+                     regions_.AreJoined(RegionOf(node), RegionOf(second));
+    }
+    return whole_[node];
   }
 
   void JoinIfNear(const Piece& piece, const Piece& other) {
@@ -150,7 +166,7 @@ class IslandFinder {
 
   void NotePlaces() {
     IslandMap map(static_cast<uint32_t>(found_.islands.size()));
-    for (const Piece& piece : grid_.pieces()) {
+    for (const Piece& piece : tree_.pieces()) {
       if (layer_.Ended()) return;
       map.AddLine(piece.a.x, piece.a.y, piece.b.x, piece.b.y, island_[piece.path - first_]);
     }
@@ -186,9 +202,9 @@ class IslandFinder {
   const uint32_t first_;
   uint32_t apart_;  // regions
   DisjointSets regions_;
-  const PieceGrid grid_;
-  std::vector<double> reach_;     // [path of the layer]
-  std::vector<uint32_t> joined_;  // [cell] how many of its first pieces are of one region
+  const PieceTree tree_;
+  std::vector<double> reach_;  // [path of the layer]
+  std::vector<bool> whole_;    // [node of tree_] known to be of one region
   uint64_t looks_ = 0;
   std::vector<uint32_t> island_;  // [path of the layer]
   PrintedIslands found_;

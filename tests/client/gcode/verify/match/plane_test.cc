@@ -2,42 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-#include <set>
 #include <vector>
 
 namespace traverse::gcode {
 namespace {
-
-std::vector<Piece> RandomPieces(std::mt19937& random, uint32_t count, double room) {
-  std::uniform_real_distribution<double> along(0, room);
-  std::vector<Piece> pieces;
-  for (uint32_t i = 0; i < count; ++i) {
-    const Point from{along(random), along(random)};
-    pieces.push_back({from, {from.x + along(random) / 20, from.y - along(random) / 20}, i});
-  }
-  return pieces;
-}
-
-TEST(PieceGrid, FindsWhatIsNear) {
-  std::mt19937 random(1);
-  const PieceGrid grid(RandomPieces(random, 300, 100), 2);
-  std::uniform_real_distribution<double> anywhere(-50, 150);
-  for (int i = 0; i < 200; ++i) {
-    const Point a{anywhere(random), anywhere(random)};
-    const Point b{anywhere(random), anywhere(random)};
-    std::set<uint32_t> near;
-    std::set<uint32_t> along;
-    grid.ForEachNear(a, b, 1.5, [&](uint32_t index) { return near.insert(index), true; });
-    grid.ForEachAlong(a, b, [&](uint32_t index) { return along.insert(index), true; });
-    for (uint32_t k = 0; k < grid.pieces().size(); ++k) {
-      const Piece& piece = grid.pieces()[k];
-      const bool is_near = DistanceOfPieces(a, b, piece.a, piece.b) <= 1.5;
-      EXPECT_TRUE(!is_near || near.contains(k));
-      EXPECT_TRUE(!PiecesCross(a, b, piece.a, piece.b) || along.contains(k));
-    }
-  }
-}
 
 TEST(PiecesCross, WhereALineLeadsFromOneSideToTheOther) {
   EXPECT_TRUE(PiecesCross({0, 5}, {20, 5}, {10, 0}, {10, 10}));
@@ -53,17 +21,6 @@ TEST(PiecesCross, WhereALineLeadsFromOneSideToTheOther) {
   // Along a line that turns away.
   EXPECT_FALSE(crosses({30, 5}, {12, 5}, {12, 10}));
   EXPECT_FALSE(crosses({30, 5}, {12, 5 + 1e-12}, {12, 10}));
-}
-
-// Damaged files lead a thousand kilometres away.
-TEST(PieceGrid, IsAskedForPlacesAnywhere) {
-  std::mt19937 random(2);
-  const PieceGrid grid(RandomPieces(random, 50, 100), 2);
-  int seen = 0;
-  const auto count = [&seen](uint32_t) { return ++seen, true; };
-  grid.ForEachNear({1e15, -1e15}, {1e15, 1e15}, 1, count);
-  grid.ForEachAlong({-1e15, 50}, {1e15, 50}, count);
-  EXPECT_GT(seen, 0);
 }
 
 TEST(AppendPieces, CutsArcsIntoChordsHoweverLarge) {

@@ -47,6 +47,22 @@ TEST(VerifyOrder, ThousandsOfLinesThatCrossTakeAsLongEach) {
   EXPECT_LT(traverse::testing::GrowthOfFour(1500, check), traverse::testing::kSlowGrowth);
 }
 
+// Cells for all of them, no more than there are pieces, would be hundreds of metres wide.
+TEST(VerifyOrder, NoneAreNearOnlyBecauseOneLiesFarAway) {
+  std::string was = kHead + Line("External perimeter", "X900000 Y900000", "X900001 Y900000");
+  std::string is = was;
+  for (int i = 0; i < 3000; ++i) {
+    const auto line = [](int number) {
+      return Line("External perimeter", absl::StrFormat("X%d Y0", number),
+                  absl::StrFormat("X%d Y1", number));
+    };
+    was += line(i);
+    is += line(2999 - i);
+  }
+
+  EXPECT_EQ(Broken(was, is, Policy::kFree), "");
+}
+
 TEST(VerifyOrder, HoldsInLayersAboveTheFirstToo) {
   const std::string near = Line("Internal infill", "X12 Y10.4", "X18 Y10.4");
   const std::string far = Line("Internal infill", "X12 Y15", "X18 Y15");
