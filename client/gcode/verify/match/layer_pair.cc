@@ -9,6 +9,7 @@
 #include "client/gcode/verify/match/laid_over.h"
 #include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/stated_settings.h"
+#include "client/gcode/verify/match/touched_walls.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -142,6 +143,7 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
     if (Outer(piece.path)) outer.push_back(piece);
   }
   JoinEqual(outer);
+  LeaveOutCrowds(outer);
   outer_walls_ = PieceTree(std::move(outer));
   Match();
 }
@@ -335,67 +337,7 @@ double LayerPair::OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link,
   const bool meets =
       std::any_of(travel.moves.begin(), travel.moves.end(),
                   [this](const auto& move) { return MeetsOuterWall(move.first, move.second); });
-  return meets || TouchesOuterWall(travel) ? travel.length_mm : 0;
-}
-
-bool LayerPair::TouchesOuterWall(const Travel& travel) const {
-  // Lines are wider than twice this. Chords of arcs and rounded coordinates are not that far off.
-  constexpr double kTouchMm = 0.08;
-  constexpr double kNearerMm = 0.05;
-  constexpr double kFarMm = kTouchMm + kNearerMm;
-  bool touches = false;
-  for (size_t m = 0; m < travel.moves.size(); ++m) {
-    const auto& [a, b] = travel.moves[m];
-    const double length = DistanceOf(a, b);
-    const auto visit = [&, a = a, b = b, m](uint32_t p) {
-      const Piece& wall = outer_walls_.pieces()[p];
-      const double mm = DistanceOfPieces(a, b, wall.a, wall.b);
-      if (mm >= kTouchMm) return true;
-      const auto away_from = [&](Point end, bool behind) {
-        return mm + kNearerMm < ToOuterWall(wall.path, end, kFarMm) ||
-               WasAway(travel, m, behind, p);
-      };
-      touches = away_from(travel.moves.front().first, false) &&
-                away_from(travel.moves.back().second, true);
-      return !touches;
-    };
-    // Between these lines there is no room for a cell of the grid.
-    for (const double side : {-kTouchMm, 0.0, kTouchMm}) {
-      const double x = -side * (b.y - a.y) / length;
-      const double y = side * (b.x - a.x) / length;
-      if (!touches) outer_walls_.ForEachAlong({a.x + x, a.y + y}, {b.x + x, b.y + y}, visit);
-    }
-  }
-  return touches;
-}
-
-bool LayerPair::WasAway(const Travel& travel, size_t move, bool behind, uint32_t piece) const {
-  constexpr double kAwayMm = 0.5;
-  constexpr double kStepMm = 0.2;
-  constexpr double kMostSteps = 10'000;  // farther than any printer moves
-  const Piece& wall = outer_walls_.pieces()[piece];
-  for (size_t i = behind ? travel.moves.size() - 1 : 0;; behind ? --i : ++i) {
-    Point a = travel.moves[i].first;
-    Point b = travel.moves[i].second;
-    if (behind) std::swap(a, b);
-    const double steps = std::min(std::ceil(DistanceOf(a, b) / kStepMm), kMostSteps);
-    for (double step = 0; step <= steps; ++step) {
-      const double t = steps > 0 ? step / steps : 0;
-      const Point at{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
-      if (i == move && DistanceToPiece(at, wall.a, wall.b) < kAwayMm) return false;
-      if (ToOuterWall(wall.path, at, kAwayMm) >= kAwayMm) return true;
-    }
-    if (i == move) return false;
-  }
-}
-
-double LayerPair::ToOuterWall(uint32_t path, Point point, double most) const {
-  outer_walls_.ForEachNear(point, point, most, [&](uint32_t p) {
-    const Piece& wall = outer_walls_.pieces()[p];
-    if (wall.path == path) most = std::min(most, DistanceToPiece(point, wall.a, wall.b));
-    return true;
-  });
-  return most;
+  return meets || TouchesWall(outer_walls_, travel.moves) ? travel.length_mm : 0;
 }
 
 bool LayerPair::CrossesOuterWall(Point a, Point b) const {

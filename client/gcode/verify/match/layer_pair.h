@@ -119,14 +119,6 @@ class LayerPair {
   Travel TravelOf(const TraceChunk& chunk, uint32_t link, bool open, uint32_t skipped) const;
 
   bool MeetsOuterWall(Point a, Point b) const;
-  bool TouchesOuterWall(const Travel& travel) const;
-
-  // Whether the travel, between its end, or its begin unless `behind`, and where its move `move`
-  // passes the piece of an outer wall, is away from that wall.
-  bool WasAway(const Travel& travel, size_t move, bool behind, uint32_t piece) const;
-
-  // From `point` to the outer wall `path`; `most` if that is less.
-  double ToOuterWall(uint32_t path, Point point, double most) const;
 
   struct Facts {
     PathClass path_class = PathClass::kUnnamed;

@@ -94,4 +94,25 @@ void JoinEqual(std::vector<Piece>& pieces) {
   pieces.resize(kept);
 }
 
+void LeaveOutCrowds(std::vector<Piece>& pieces) {
+  // Of the shortest that slicers write, side by side, a square millimeter has a few hundred.
+  constexpr uint32_t kMost = 1000;
+  constexpr double kMostPlaces = 256;  // of one piece, at which it is looked for crowds
+  if (pieces.size() <= kMost) return;
+  absl::flat_hash_map<std::pair<double, double>, uint32_t> pieces_at;  // by square millimeter
+  std::erase_if(pieces, [&](const Piece& piece) {
+    const double steps = std::min(std::ceil(DistanceOf(piece.a, piece.b)), kMostPlaces);
+    bool crowded = false;
+    std::pair<double, double> last(NAN, NAN);
+    for (double step = 0; step <= steps; ++step) {
+      const double t = steps > 0 ? step / steps : 0;
+      const std::pair here(std::floor(piece.a.x + (piece.b.x - piece.a.x) * t),
+                           std::floor(piece.a.y + (piece.b.y - piece.a.y) * t));
+      if (here != last) crowded |= ++pieces_at[here] > kMost;
+      last = here;
+    }
+    return crowded;
+  });
+}
+
 }  // namespace traverse::gcode

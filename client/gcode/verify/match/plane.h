@@ -43,6 +43,9 @@ inline constexpr uint32_t kSeveralPaths = UINT32_MAX;
 // Leaves one of those that lie in the same place: loops may be printed there again and again.
 void JoinEqual(std::vector<Piece>& pieces);
 
+// Leaves out what comes to a place that has more pieces than can be printed there already.
+void LeaveOutCrowds(std::vector<Piece>& pieces);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_PLANE_H_

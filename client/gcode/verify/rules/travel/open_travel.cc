@@ -24,7 +24,7 @@ std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
   // Travel begins where the move along the path before it ends.
   const Tails tails(layer, original, true);
   std::vector<OpenTravel> travels;
-  for (uint32_t link = first; link < end; ++link) {
+  for (uint32_t link = first; link < end && !layer.Ended(); ++link) {
     const TraceLink& traced = chunk.links[link];
     if (traced.first_move == traced.end_move) continue;
     const double length = layer.OpenLengthOverWalls(chunk, link, tails.At(link));

@@ -56,5 +56,18 @@ TEST(JoinEqual, LeavesOneOfThosePiecesThatLieInOnePlace) {
   EXPECT_EQ(pieces[2].b.x, 2);
 }
 
+TEST(LeaveOutCrowds, LeavesWhatCanBePrintedInOnePlace) {
+  std::vector<Piece> pieces;
+  for (uint32_t i = 0; i < 2500; ++i) pieces.push_back({{5.1, 5.1}, {5.1, 5.1 + i * 1e-4}, i});
+  pieces.push_back({{7.5, 5.5}, {7.5, 6.5}, 2500});  // beside the crowd
+  pieces.push_back({{0, 5.5}, {10, 5.5}, 2501});     // through it
+
+  LeaveOutCrowds(pieces);
+
+  EXPECT_GT(pieces.size(), 900u);
+  EXPECT_LT(pieces.size(), 1500u);
+  EXPECT_EQ(pieces.back().path, 2500u);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "tests/client/gcode/verify/small_prints.h"
 #include "tests/support/growth.h"
 
@@ -194,6 +196,24 @@ TEST(VerifyOpenTravels, ManyThatAreNewTakeNoLongerEach) {
     EXPECT_EQ(Broken(a, b, Policy::kFree), "");
   };
   EXPECT_LT(traverse::testing::GrowthOfFour(10'000, check), traverse::testing::kSlowGrowth);
+}
+
+// Loops of a few thousandths of a millimeter, all of them in a square of a third of a millimeter:
+// each move between them comes right over hundreds.
+TEST(VerifyOpenTravels, InACrowdOfLoopsTakeNoLongerEach) {
+  const auto check = [](int loops) {
+    std::string was = kHead + ";TYPE:External perimeter\n";
+    for (int i = 0; i < loops; ++i) {
+      const int place = static_cast<int>(int64_t{i} * 7919 % loops);
+      const double x = 0.003 * (place % 100);
+      const double y = 0.3 * place / loops;
+      absl::StrAppendFormat(&was, "G1 X%.3f Y%.3f F9000\nG1 F1200\n", x, y);
+      absl::StrAppendFormat(&was, "G1 X%.3f E.1\nG1 Y%.3f E.1\nG1 X%.3f Y%.3f E.1\n", x + 0.003,
+                            y + 0.003, x, y);
+    }
+    EXPECT_EQ(Broken(was, was), "");
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(2000, check), traverse::testing::kSlowGrowth);
 }
 
 }  // namespace

@@ -1,0 +1,127 @@
+#include "client/gcode/verify/match/touched_walls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/container/flat_hash_map.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Lines are wider than twice this. Chords of arcs and rounded coordinates are not that far off.
+constexpr double kTouchMm = 0.08;
+constexpr double kNearerMm = 0.05;
+constexpr double kFarMm = kTouchMm + kNearerMm;
+constexpr double kAwayMm = 0.5;
+
+// The walls beside one end of some travel, and where it leaves each of them.
+class WallsAtEnd {
+ public:
+  // `moves` begin at the end.
+  WallsAtEnd(const PieceTree& walls, std::vector<std::pair<Point, Point>> moves)
+      : walls_(walls), moves_(std::move(moves)) {
+    ForEachNear(moves_.front().first, [&](uint32_t path, double mm) {
+      WallHere& wall = here_[path];
+      wall.end_mm = std::min(wall.end_mm, mm);
+    });
+  }
+
+  // True if the end is farther from `wall` than move `move`, which comes as near as `mm`, or if the
+  // travel is away from the wall before it comes near this piece of it on that move.
+  bool IsAway(const Piece& wall, size_t move, double mm) {
+    const auto here = here_.find(wall.path);
+    if (here == here_.end() || mm + kNearerMm < std::min(here->second.end_mm, kFarMm)) return true;
+    if (!followed_) Follow();
+    const WallHere& found = here->second;
+    if (!found.left || found.left_on > move) return false;
+    if (found.left_on < move) return true;
+    return DistanceOfPieces(moves_[move].first, found.left_at, wall.a, wall.b) >= kAwayMm;
+  }
+
+ private:
+  struct WallHere {
+    double end_mm = kAwayMm;  // from the end
+    size_t beside_until = 0;  // the last point that is near it
+    bool left = false;
+    size_t left_on = 0;  // the move
+    Point left_at;
+  };
+
+  // Calls visit(path, mm) for pieces of walls nearer to `point` than kAwayMm.
+  template <typename Visit>
+  void ForEachNear(Point point, Visit visit) const {
+    walls_.ForEachNear(point, point, kAwayMm, [&](uint32_t p) {
+      const Piece& wall = walls_.pieces()[p];
+      const double mm = DistanceToPiece(point, wall.a, wall.b);
+      if (mm < kAwayMm) visit(wall.path, mm);
+      return true;
+    });
+  }
+
+  // From point to point until all walls are left: those beside one point that were beside each
+  // before it.
+  void Follow() {
+    constexpr double kStepMm = 0.2;
+    constexpr double kMostSteps = 10'000;  // farther than any printer moves
+    followed_ = true;
+    std::vector<WallHere*> beside;
+    beside.reserve(here_.size());
+    for (auto& [path, wall] : here_) beside.push_back(&wall);
+    size_t points = 0;
+    for (size_t move = 0; move < moves_.size(); ++move) {
+      const auto& [a, b] = moves_[move];
+      const double steps = std::min(std::ceil(DistanceOf(a, b) / kStepMm), kMostSteps);
+      for (double step = 0; step <= steps && !beside.empty(); ++step) {
+        const double t = steps > 0 ? step / steps : 0;
+        const Point at{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
+        ++points;
+        ForEachNear(at, [&](uint32_t path, double) {
+          const auto wall = here_.find(path);
+          if (wall != here_.end()) wall->second.beside_until = points;
+        });
+        std::erase_if(beside, [&](WallHere* wall) {
+          if (wall->beside_until == points) return false;
+          wall->left = true;
+          wall->left_on = move;
+          wall->left_at = at;
+          return true;
+        });
+      }
+    }
+  }
+
+  const PieceTree& walls_;
+  const std::vector<std::pair<Point, Point>> moves_;
+  absl::flat_hash_map<uint32_t, WallHere> here_;  // by path
+  bool followed_ = false;
+};
+
+std::vector<std::pair<Point, Point>> Backwards(std::vector<std::pair<Point, Point>> moves) {
+  std::reverse(moves.begin(), moves.end());
+  for (auto& [a, b] : moves) std::swap(a, b);
+  return moves;
+}
+
+}  // namespace
+
+bool TouchesWall(const PieceTree& walls, const std::vector<std::pair<Point, Point>>& moves) {
+  if (moves.empty()) return false;
+  WallsAtEnd begin(walls, moves);
+  WallsAtEnd end(walls, Backwards(moves));
+  bool touches = false;
+  for (size_t m = 0; m < moves.size() && !touches; ++m) {
+    const auto& [a, b] = moves[m];
+    walls.ForEachNear(a, b, kTouchMm, [&, a = a, b = b, m](uint32_t p) {
+      const Piece& wall = walls.pieces()[p];
+      const double mm = DistanceOfPieces(a, b, wall.a, wall.b);
+      touches =
+          mm < kTouchMm && begin.IsAway(wall, m, mm) && end.IsAway(wall, moves.size() - 1 - m, mm);
+      return !touches;
+    });
+  }
+  return touches;
+}
+
+}  // namespace traverse::gcode
