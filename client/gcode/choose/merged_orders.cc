@@ -150,10 +150,11 @@ class LayerMerge {
     turned.given_begin = BeginOf(given_.front());
     turned.given_end = EndOf(given_.back());
     turned.may_grow = rules_.policy != Policy::kSafe;
+    std::vector<SettledOrder> settled;
     IslandTurns::Settle settle;
     if (rules_.freedom) {
-      settle = [this](const LayerOrder& order, const std::vector<uint32_t>& units) {
-        return SettleWithin(order, units);
+      settle = [&](const LayerOrder& order, const std::vector<uint32_t>& units) {
+        return SettleOnce(order, units, settled);
       };
     }
     turned.turns = IslandTurns(given_, orders, islands, rest_seconds, freedom, estimate_, quick_,
@@ -165,13 +166,27 @@ class LayerMerge {
     return turned;
   }
 
+  // What an order within `units` became.
+  struct SettledOrder {
+    LayerOrder order;
+    std::vector<uint32_t> units;
+    LayerOrder settled;
+  };
+
+  // The same order comes up again where two orders of a layer differ only in the sequence of their
+  // islands, and where no islands count as one.
+  LayerOrder SettleOnce(const LayerOrder& order, const std::vector<uint32_t>& units,
+                        std::vector<SettledOrder>& known) const {
+    for (const SettledOrder& before : known) {
+      if (before.order == order && before.units == units) return before.settled;
+    }
+    known.push_back({order, units, SettleWithin(order, units)});
+    return known.back().settled;
+  }
+
   // See SettledWithin.
-  LayerOrder SettleWithin(const LayerOrder& order, std::vector<uint32_t> units) const {
-    LayerFreedom freedom = *rules_.freedom;
-    freedom.group = std::move(units);
-    const OrderPolisher polisher(given_.front().block, outlines_, freedom, estimate_,
-                                 *rules_.polish);
-    return polisher.Polish(order, quick_, Effort::kSettle);
+  LayerOrder SettleWithin(const LayerOrder& order, const std::vector<uint32_t>& units) const {
+    return polisher_->PolishWithin(units, order, quick_, Effort::kSettle);
   }
 
   // Travel takes as long in nominal time as in the file's own order, where `moments` are when its
@@ -293,8 +308,8 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
 }
 
 LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
-                         const MergeRules& rules, std::vector<uint32_t> units) {
-  return LayerMerge(writer, rules).SettleWithin(order, std::move(units));
+                         const MergeRules& rules, const std::vector<uint32_t>& units) {
+  return LayerMerge(writer, rules).SettleWithin(order, units);
 }
 
 LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,

@@ -73,7 +73,7 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
 // `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
 // rules.polish.
 LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
-                         const MergeRules& rules, std::vector<uint32_t> units);
+                         const MergeRules& rules, const std::vector<uint32_t>& units);
 
 // `order`, in which whole objects have changed places, improved within each of them.
 // REQUIRES: rules.freedom, rules.polish, rules.places.

@@ -35,10 +35,11 @@ constexpr size_t kWindowEach = 600;
 
 class OrderPolisher::Search {
  public:
-  Search(const OrderPolisher& polisher, const OrderMerger& judge, const LayerOrder& begun)
+  Search(const OrderPolisher& polisher, const std::vector<uint32_t>& groups,
+         const OrderMerger& judge, const LayerOrder& begun)
       : polisher_(polisher),
-        state_(begun, polisher.first_block_, polisher.freedom_, polisher.pairs_, polisher.estimate_,
-               judge),
+        state_(begun, polisher.first_block_, polisher.freedom_, groups, polisher.pairs_,
+               polisher.estimate_, judge),
         queued_(begun.size(), false),
         most_(kMostTravelsEach * begun.size()) {
     for (uint32_t path = 0; path < begun.size(); ++path) Push(path);
@@ -269,10 +270,10 @@ OrderPolisher::OrderPolisher(uint32_t first_block, const std::vector<Outline>& o
   FindNeighbors();
 }
 
-LayerOrder OrderPolisher::Polish(const LayerOrder& begun, const OrderMerger& judge,
-                                 Effort effort) const {
+LayerOrder OrderPolisher::PolishWithin(const std::vector<uint32_t>& groups, const LayerOrder& begun,
+                                       const OrderMerger& judge, Effort effort) const {
   if (begun.size() < 3) return begun;
-  return Search(*this, judge, begun).Run(effort);
+  return Search(*this, groups, judge, begun).Run(effort);
 }
 
 Point OrderPolisher::Begin(const Placement& placement) const {

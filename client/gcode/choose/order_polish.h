@@ -65,7 +65,14 @@ class OrderPolisher {
   // freedom, but does not repair a `begun` that is beyond it. It stops when estimates gain too
   // little, when it has asked for about kMostTravelsEach of them per path, or at the limit.
   // REQUIRES: `begun` has each path of the layer once, or none.
-  LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const;
+  LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const {
+    return PolishWithin(freedom_.group, begun, judge, effort);
+  }
+
+  // The same where no path leaves its group of `groups`, [path], instead of that of the layer's
+  // freedom. REQUIRES: those of a group stand together in `begun`.
+  LayerOrder PolishWithin(const std::vector<uint32_t>& groups, const LayerOrder& begun,
+                          const OrderMerger& judge, Effort effort) const;
 
   static constexpr size_t kMostTravelsEach = 50'000;
 

@@ -14,10 +14,11 @@ PathPairs::PathPairs(const LayerFreedom& freedom)
 }
 
 OrderState::OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedom& freedom,
-                       const PathPairs& pairs, const TravelEstimate& estimate,
-                       const OrderMerger& judge)
+                       const std::vector<uint32_t>& groups, const PathPairs& pairs,
+                       const TravelEstimate& estimate, const OrderMerger& judge)
     : first_block_(first_block),
       freedom_(freedom),
+      groups_(groups),
       pairs_(pairs),
       estimate_(estimate),
       judge_(judge),
@@ -59,7 +60,7 @@ bool OrderState::AnyBetween(const std::vector<uint32_t>& paths, size_t begin, si
 bool OrderState::MayExchange(size_t begin, size_t middle, size_t end) const {
   if (begin == 0 || end >= size()) return false;
   // Groups come one after the other.
-  if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
+  if (groups_[PathAt(begin)] != groups_[PathAt(end - 1)]) return false;
   if (!MayCut(begin) || !MayCut(middle) || !MayCut(end)) return false;
   if (middle - begin <= end - middle) {
     for (size_t i = begin; i < middle; ++i) {
@@ -75,7 +76,7 @@ bool OrderState::MayExchange(size_t begin, size_t middle, size_t end) const {
 
 bool OrderState::MayTurn(size_t begin, size_t end) const {
   if (begin == 0 || end >= size()) return false;
-  if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
+  if (groups_[PathAt(begin)] != groups_[PathAt(end - 1)]) return false;
   if (!MayCut(end)) return false;
   for (size_t i = begin; i < end; ++i) {
     const PathRule& rule = RuleAt(i);

@@ -44,10 +44,12 @@ struct PathPairs {
 
 class OrderState {
  public:
-  // `pairs` are those of `freedom`. The path with index 0 is block `first_block`. All but `begun`
-  // outlive the state. REQUIRES: `begun` has each path of `freedom` once.
+  // `pairs` are those of `freedom`. `groups` count instead of freedom.group. The path with index 0
+  // is block `first_block`. All but `begun` outlive the state. REQUIRES: `begun` has each path of
+  // `freedom` once.
   OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedom& freedom,
-             const PathPairs& pairs, const TravelEstimate& estimate, const OrderMerger& judge);
+             const std::vector<uint32_t>& groups, const PathPairs& pairs,
+             const TravelEstimate& estimate, const OrderMerger& judge);
 
   size_t size() const { return order_.size(); }
   const LayerOrder& order() const { return order_; }
@@ -97,6 +99,7 @@ class OrderState {
 
   const uint32_t first_block_;
   const LayerFreedom& freedom_;
+  const std::vector<uint32_t>& groups_;  // [path]
   const PathPairs& pairs_;
   const TravelEstimate& estimate_;
   const OrderMerger& judge_;

@@ -83,6 +83,21 @@ TEST(OrderPolisher, BringsPathsWhereTheyLie) {
   EXPECT_EQ(PathsOf(sheet.Polished(sheet.Given())), (std::vector<uint32_t>{0, 3, 5, 2, 4, 1, 6}));
 }
 
+TEST(OrderPolisher, KeepsPathsInTheGroupsThatItIsGiven) {
+  PolishedLayer sheet;
+  for (const double x : {0.0, 10.0, 6.0, 2.0, 8.0, 4.0, 12.0}) sheet.AddLine(x, 0);
+  const TravelEstimate estimate = [&sheet](size_t, const Placement& from, const Placement& to) {
+    return sheet.Length(from, to);
+  };
+  const PolishLimit limit;
+  const OrderPolisher polisher(kFirst, sheet.outlines, sheet.freedom, estimate, limit);
+  const LayerOrder polished =
+      polisher.PolishWithin({0, 0, 0, 0, 1, 1, 1}, sheet.Given(), OrderMerger(estimate, {}),
+                            OrderPolisher::Effort::kSettle);
+
+  EXPECT_EQ(PathsOf(polished), (std::vector<uint32_t>{0, 3, 2, 1, 5, 4, 6}));
+}
+
 TEST(OrderPolisher, TurnsRoundWhatMayBeTurned) {
   PolishedLayer sheet;
   for (int i = 0; i < 6; ++i) sheet.AddLine(0, i, false);
