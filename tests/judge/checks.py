@@ -16,6 +16,7 @@ END_ON_WALL_MM = 0.02  # beside what loops end short of their start
 CROSSING_MM = 1e-9
 MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02
+SCARF_MM = 0.5  # seams rise by less
 REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no rest at all
 SHARE_SLACK = 2.0  # points of a per cent
 ACCEL = 3  # in print_trace.STATE
@@ -113,7 +114,13 @@ def filament(before, after, options):
     """Nothing is printed while filament is pulled back, and as much is pushed in the whole as before."""
 
     def starved(side):
-        return sum(move.e for move in side.deposits() if move.retracted > 0.02)
+        """What is lacking where lines deposit with filament pulled back: no more than each of them pushes."""
+        pushed, lacking = collections.Counter(), {}
+        for move in side.deposits():
+            if move.retracted > 0.02:
+                pushed[move.line] += move.e
+                lacking[move.line] = move.retracted
+        return sum(min(mm, lacking[line]) for line, mm in pushed.items())
 
     if starved(after) > starved(before) + 0.02:
         worst = next(move for move in after.deposits() if move.retracted > 0.02)
@@ -333,11 +340,13 @@ def stringing(before, after, options):
 
 
 def layers_of(side):
-    """Runs of deposits at one height, as lists of moves."""
+    """Runs of deposits at one height, as lists of moves. What rises to no more than that on the way is a scarf seam of
+    the same layer."""
     layers, height = [], None
     for move in side.deposits():
         z = round(max(move.z0, move.z1), 3)
-        if z != height:
+        of_seam = height is not None and move.z0 < move.z1 and 0 <= height - z < SCARF_MM
+        if z != height and not of_seam:
             layers.append((z, []))
             height = z
         layers[-1][1].append(move)

@@ -75,6 +75,20 @@ class Checks(unittest.TestCase):
 
         self.assertNotIn("filament", faults(before, after))
 
+    def test_what_the_nozzle_lacks_in_both_may_be_lacking_in_a_longer_path(self):
+        lacks = ["G1 E-0.8 F2100", "G1 E0.77"]
+        before = HEAD + layer(0.2, lacks, block(10, 0.2, e=0.1), block(40, 0.2))
+        after = HEAD + layer(0.2, lacks, block(40, 0.2), block(10, 0.2, e=0.1))
+
+        self.assertNotIn("filament", faults(before, after))
+
+    def test_a_layer_goes_on_behind_a_scarf_seam(self):
+        seam = ["G1 X60 Y10 F9000", "G1 Z0.25 F9000", "G1 F1800", "G1 X60 Y15 Z0.3 E0.1", "G1 X60 Y20 Z0.4 E0.1"]
+        layers = checks.layers_of(print_trace.trace("\n".join(
+            HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, block(10, 0.4), seam, block(40, 0.4)))))
+
+        self.assertEqual([(z, len(moves)) for z, moves in layers], [(0.2, 4), (0.4, 10)])
+
     def test_less_rest_is_found_where_the_policy_keeps_it(self):
         after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
 
