@@ -159,7 +159,7 @@ void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
     case StepKind::kRelative:  // lifts are written as heights
       return;
     default:
-      Stay(step);
+      Stay(Balanced(step, link));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "client/gcode/link/composer.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "client/gcode/model/part_links.h"
@@ -288,8 +289,19 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
 
 void LinkComposer::Arrive(const Link& like) {
   for (size_t i = static_cast<size_t>(like.arrival + 1); i < like.steps.size(); ++i) {
-    Move(like.steps[i], like.z_behind, to_.first().z);
+    Move(Balanced(like.steps[i], like), like.z_behind, to_.first().z);
   }
+}
+
+// Step of `like`; a prime pushes as much more, or less, than was pulled back as in the file. Where
+// E words are positions, each amount is off by what these are rounded by.
+LinkStep LinkComposer::Balanced(LinkStep step, const Link& like) const {
+  const Decimal off = link_.pulled() - like.pulled;
+  const bool primes = step.kind == StepKind::kFilament && step.filament > 0;
+  if (primes && !link_.machine().RelativeE() && std::abs(off) <= kRetractionSlack) {
+    step.filament += off;
+  }
+  return step;
 }
 
 // Together, and where the nozzle is not yet where it would leave a blob: a beep may take a while.

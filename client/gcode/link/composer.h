@@ -73,6 +73,7 @@ class LinkComposer {
   std::vector<Position> BendsToNext() const;
   void TravelAs(const Link& like, Decimal top, const Link& rise);
   void Arrive(const Link& like);
+  LinkStep Balanced(LinkStep step, const Link& like) const;
   void AddSaid();
   void AddComments();
   void Settle(const Link& like);

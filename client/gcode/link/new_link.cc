@@ -19,6 +19,7 @@ void NewLink::Keep(const FilePart& part) {
   assert(lines_.empty());
   part_ = part;
   machine_ = part.behind.machine;
+  pulled_ = machine_.retracted;
 }
 
 void NewLink::Travels() { travel_ = arrival_ = lines_.size(); }
@@ -50,6 +51,7 @@ void NewLink::Edited(const LinkStep& step, const GcodeFile& file, const Position
   line.step.from = from;
   line.step.to = to;
   if (moves || (step.words & Command::Bit('F')) != 0) machine_.feed = step.feed;
+  if (step.kind != StepKind::kSetE) pulled_ -= step.filament;
 }
 
 void NewLink::Travel(std::string_view line, const Position& to, Decimal feed) {
@@ -70,6 +72,7 @@ void NewLink::Lift(Decimal z, Decimal feed) {
 void NewLink::Pull(Decimal filament, Decimal feed) {
   machine_.feed = feed;
   Add(LineForm::kPull, {}, StepKind::kFilament, machine_.at).step.filament = -filament;
+  pulled_ += filament;
 }
 
 void NewLink::Segment(const Position& to, bool extrudes, Decimal filament, Decimal feed) {
@@ -78,6 +81,7 @@ void NewLink::Segment(const Position& to, bool extrudes, Decimal filament, Decim
   LinkLine& line = Add(LineForm::kSegment, {}, kind, {to.x, to.y, machine_.at.z});
   line.step.filament = filament;
   line.extrudes = extrudes;
+  pulled_ -= filament;
 }
 
 }  // namespace traverse::gcode

@@ -54,11 +54,14 @@ struct FilePart {
 class NewLink {
  public:
   // The link begins with the machine at `at`, whose extruder does not matter.
-  explicit NewLink(const MachineState& at) : machine_(at) {}
+  explicit NewLink(const MachineState& at) : machine_(at), pulled_(at.retracted) {}
 
   // The machine behind the lines so far, but for its extruder.
   const MachineState& machine() const { return machine_; }
   const Position& at() const { return machine_.at; }
+
+  // Filament pulled back by E words and not yet pushed.
+  Decimal pulled() const { return pulled_; }
 
   // What stays, ahead of all lines.
   const std::optional<FilePart>& part() const { return part_; }
@@ -93,6 +96,7 @@ class NewLink {
   LinkLine& Add(LineForm form, std::string_view raw, StepKind kind, const Position& to);
 
   MachineState machine_;
+  Decimal pulled_ = 0;
   std::optional<FilePart> part_;
   std::vector<LinkLine> lines_;
   std::vector<PrintState> states_;
