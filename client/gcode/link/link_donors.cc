@@ -28,10 +28,24 @@ Decimal UsualLiftToLayers(const GcodeFile& file) {
   return 0;
 }
 
+// Whether the link before each block is whole, and of the part.
+std::vector<bool> MayFollowIn(const GcodeFile& file) {
+  constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
+  std::vector<bool> may_follow;
+  may_follow.reserve(file.blocks.size());
+  for (uint32_t i = 0; i < file.blocks.size(); ++i) {
+    may_follow.push_back((file.blocks[i].link & kNoExample) == 0 && LeadsWithinPart(file, i));
+  }
+  return may_follow;
+}
+
 }  // namespace
 
 LinkDonors::LinkDonors(const GcodeFile& file)
-    : file_(file), layer_of_(file.blocks.size()), lift_to_layers_(UsualLiftToLayers(file)) {
+    : file_(file),
+      layer_of_(file.blocks.size()),
+      may_follow_(MayFollowIn(file)),
+      lift_to_layers_(UsualLiftToLayers(file)) {
   for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
     const Layer& of = file.layers[layer];
     std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
@@ -55,11 +69,6 @@ void LinkDonors::CountLifts(uint32_t link) {
   const Block& block = file_.blocks[link];
   lifts_[{KindOf(link), layer_of_[link]}] += block.lift > 0 ? 1 : -1;
   highest_lift_ = std::max(highest_lift_, block.lift);
-}
-
-bool LinkDonors::MayFollow(uint32_t block) const {
-  constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
-  return (file_.blocks[block].link & kNoExample) == 0 && LeadsWithinPart(file_, block);
 }
 
 Decimal LinkDonors::LiftToLayer(uint32_t block) const {

@@ -34,7 +34,7 @@ class LinkDonors {
   std::optional<uint32_t> PaceFor(uint32_t block, uint32_t link) const;
 
   // Whether link `block` itself may be a template.
-  bool MayFollow(uint32_t block) const;
+  bool MayFollow(uint32_t block) const { return may_follow_[block]; }
 
   // Most links like link `block` in its layer rise above what is printed, but it does
   // not.
@@ -58,6 +58,7 @@ class LinkDonors {
 
   const GcodeFile& file_;
   std::vector<uint32_t> layer_of_;                       // [block]
+  std::vector<bool> may_follow_;                         // [block]
   std::map<Kind, std::vector<uint32_t>> donors_;         // ascending
   std::map<Kind, std::vector<uint32_t>> lifted_;         // those of them that lift
   std::map<Kind, std::vector<uint32_t>> wiping_;         // that wipe
