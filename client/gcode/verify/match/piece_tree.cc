@@ -8,7 +8,8 @@ namespace {
 
 constexpr size_t kPartsOfLeaf = 8;
 constexpr double kPartMm = 2;
-constexpr double kPartsOfPiece = 16;  // on the average, at most
+constexpr double kPartsOfPiece = 2;  // on the average, at most, and some more
+constexpr double kPartsAlways = 1 << 16;
 
 }  // namespace
 
@@ -23,7 +24,7 @@ PieceTree::PieceTree(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 std::vector<PieceTree::Part> PieceTree::PartsOfPieces() const {
   double length = 0;
   for (const Piece& piece : pieces_) length += DistanceOf(piece.a, piece.b);
-  const double most = kPartsOfPiece * static_cast<double>(pieces_.size());
+  const double most = kPartsOfPiece * static_cast<double>(pieces_.size()) + kPartsAlways;
   const double part_mm = std::max(kPartMm, length / most);
   std::vector<Part> parts;
   for (uint32_t i = 0; i < pieces_.size(); ++i) {

@@ -16,7 +16,7 @@ namespace traverse::gcode {
 // Boxes in boxes: each holds half of what the one around it holds, so neither what lies far away
 // nor a crowd somewhere makes the others coarse. Long pieces are entered in parts, else the box of
 // a diagonal would be the whole layer. Built in O(n log n); memory: some hundred bytes per piece,
-// and some for each two mm of it, up to a thousand.
+// and some megabytes.
 class PieceTree {
  public:
   explicit PieceTree(std::vector<Piece> pieces = {});

@@ -97,11 +97,15 @@ void JoinEqual(std::vector<Piece>& pieces) {
 void LeaveOutCrowds(std::vector<Piece>& pieces) {
   // Of the shortest that slicers write, side by side, a square millimeter has a few hundred.
   constexpr uint32_t kMost = 1000;
-  constexpr double kMostPlaces = 256;  // of one piece, at which it is looked for crowds
   if (pieces.size() <= kMost) return;
+  // They are looked for at each millimeter along the pieces, but at no more than so many places.
+  const double most = 8.0 * static_cast<double>(pieces.size()) + (1 << 16);
+  double length = 0;
+  for (const Piece& piece : pieces) length += DistanceOf(piece.a, piece.b);
+  const double step_mm = std::max(1.0, length / most);
   absl::flat_hash_map<std::pair<double, double>, uint32_t> pieces_at;  // by square millimeter
   std::erase_if(pieces, [&](const Piece& piece) {
-    const double steps = std::min(std::ceil(DistanceOf(piece.a, piece.b)), kMostPlaces);
+    const double steps = std::ceil(DistanceOf(piece.a, piece.b) / step_mm);
     bool crowded = false;
     std::pair<double, double> last(NAN, NAN);
     for (double step = 0; step <= steps; ++step) {

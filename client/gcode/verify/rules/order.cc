@@ -87,7 +87,7 @@ class Cells {
   const std::vector<std::vector<uint32_t>>& cells() const { return cells_; }
 
  private:
-  static constexpr double kMostEach = 64;
+  static constexpr double kMostEach = 8;
   static constexpr double kMostAlways = 1 << 18;
 
   // What lies farther away than can be counted is in the last one.

@@ -97,5 +97,13 @@ TEST(PieceTree, FindsFewOfLongDiagonals) {
   EXPECT_LE(VisitedAlong(tree, {120, 60}, {121, 60}), 48);
 }
 
+// Lines of a kilometer are entered in few parts: a file of a megabyte may have thousands.
+TEST(PieceTree, HasAFewNodesForEachPieceHoweverLong) {
+  std::vector<Piece> pieces;
+  for (uint32_t i = 0; i < 20'000; ++i) pieces.push_back({{0.1 * i, 0}, {0, 1e6}, i});
+
+  EXPECT_LT(PieceTree(std::move(pieces)).node_count(), 65'000u);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
