@@ -7,8 +7,11 @@
 namespace traverse::gcode {
 namespace {
 
-// Of any arc: a file may ask for one of a kilometer's radius.
+// Of any arc, and of one that is longer than any print's: a file may ask for thousands of a
+// kilometer's radius.
 constexpr double kMostLines = 720;
+constexpr double kLongMm = 10'000;
+constexpr double kMostLinesOfLong = 16;
 
 // In the unit of the words, relative to the arc's start.
 struct Circle {
@@ -49,11 +52,12 @@ Circle CircleOf(const Command& command, double dx, double dy) {
   return circle;
 }
 
-// The points between the ends that part an arc from `from` into `lines`, or kMostLines.
+// The points between the ends that part an arc from `from` into `lines`, or as many as it may have.
 std::vector<Point> Parted(const Circle& circle, const Position& from, double unit_mm,
                           double lines) {
   const double radius_mm = circle.radius * unit_mm;
-  const int parts = static_cast<int>(std::min(lines, kMostLines));
+  const double most = circle.angle * radius_mm > kLongMm ? kMostLinesOfLong : kMostLines;
+  const int parts = static_cast<int>(std::min(lines, most));
   const double first = std::atan2(-circle.j, -circle.i);
   const double center_x = (ToDouble(from.x) + circle.i) * unit_mm;
   const double center_y = (ToDouble(from.y) + circle.j) * unit_mm;

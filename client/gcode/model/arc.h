@@ -16,7 +16,8 @@ double ArcLength(const Command& command, const Position& from, const Position& t
                  double directions[4] = nullptr);
 
 // Points on that arc between its ends, in mm and in order, such that the lines between them stay
-// within `tolerance_mm` of it; none for a flatter arc. At most 719.
+// within `tolerance_mm` of it; none for a flatter arc. At most 719, or 15 of an arc of more than
+// 10 m.
 std::vector<Point> ArcPoints(const Command& command, const Position& from, const Position& to,
                              double unit_mm, double tolerance_mm);
 

@@ -10,7 +10,9 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kChordMm = 0.01;  // an arc may lie this far from its chord
-constexpr int kMostChords = 360;
+constexpr double kMostChords = 360;
+constexpr double kMostArcMm = 10'000;  // longer than any print's: of a few chords
+constexpr double kMostChordsOfLong = 16;
 
 double Side(Point a, Point b, Point p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
@@ -25,7 +27,8 @@ void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
   while (sweep <= 1e-9) sweep += 2 * M_PI;
   const double step = radius > kChordMm ? 2 * std::acos(1 - kChordMm / radius) : M_PI;
   // Of an arc as large as a line is long the step is 0.
-  const int n = static_cast<int>(std::clamp(std::ceil(sweep / step), 1.0, 1.0 * kMostChords));
+  const double most = sweep * radius > kMostArcMm ? kMostChordsOfLong : kMostChords;
+  const int n = static_cast<int>(std::clamp(std::ceil(sweep / step), 1.0, most));
   Point at = from;
   for (int k = 1; k <= n; ++k) {
     const double angle = begin + (arc.clockwise ? -sweep : sweep) * k / n;
