@@ -69,7 +69,7 @@ void LinkComposer::KeepGiven() {
 Link LinkComposer::LikeWhat(bool retracts) const {
   const uint32_t to = to_.placement().block;
   if (donors_.IsOwnExample(to, retracts, form_.wipes)) {
-    const std::shared_ptr<const Link> own = parts_.LinkTo(to);
+    const std::shared_ptr<const Link> own = parts_.ModelOf(to);
     if (own->arrival >= 0) return *own;
   }
   for (const bool pulls : {retracts, !retracts}) {
@@ -79,15 +79,15 @@ Link LinkComposer::LikeWhat(bool retracts) const {
     if (pulls && !retracts && to_.first().SameXy(link_.at())) return {};
     const std::optional<uint32_t> donor = donors_.Find(to, pulls, pulls && wipes);
     if (!donor) continue;
-    Link like = *parts_.LinkTo(*donor);
+    Link like = *parts_.ModelOf(*donor);
     if (like.arrival < 0) continue;
     if (const std::optional<uint32_t> pace = donors_.PaceFor(to, *donor)) {
-      const std::shared_ptr<const Link> own = parts_.LinkTo(*pace);
+      const std::shared_ptr<const Link> own = parts_.ModelOf(*pace);
       if (own->arrival >= 0) like.arriving().feed = own->arriving().feed;
     }
     return like;
   }
-  return *parts_.LinkTo(to);
+  return *parts_.ModelOf(to);
 }
 
 // What it would be like if it were seen: of that the travel alone.

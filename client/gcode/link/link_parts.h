@@ -28,6 +28,10 @@ class LinkParts {
   // ReadLink of the file.
   std::shared_ptr<const Link> LinkTo(uint32_t block);
 
+  // The same as a model for other links, which take neither its bends nor its comments: of these it
+  // has none, however many there are in the file.
+  std::shared_ptr<const Link> ModelOf(uint32_t block);
+
   std::shared_ptr<const PlacedPath> PathOf(const Placement& placement);
   std::shared_ptr<const PathEnds> EndsOf(const Placement& placement);
 
@@ -41,6 +45,7 @@ class LinkParts {
 
   const GcodeFile& file_;
   absl::flat_hash_map<uint32_t, std::shared_ptr<const Link>> links_;
+  absl::flat_hash_map<uint32_t, std::shared_ptr<const Link>> models_;
   absl::flat_hash_map<Key, std::shared_ptr<const PlacedPath>> paths_;
   absl::flat_hash_map<Key, std::shared_ptr<const PathEnds>> ends_;
   size_t kept_ = 0;
