@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "absl/container/flat_hash_map.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -82,6 +84,8 @@ std::optional<std::vector<size_t>> Pair(const std::vector<Run>& was, const std::
   if (was.size() != is.size()) return std::nullopt;
   std::vector<size_t> pairs(is.size());
   std::vector<bool> taken(was.size(), false);
+  absl::flat_hash_map<uint64_t, std::vector<size_t>> runs_under;
+  for (size_t j = 0; j < was.size(); ++j) runs_under[was[j].under].push_back(j);
   for (size_t k = 0; k < is.size(); ++k) {
     const auto same = [&](size_t j) {
       return !taken[j] && was[j].under == is[k].under &&
@@ -89,13 +93,11 @@ std::optional<std::vector<size_t>> Pair(const std::vector<Run>& was, const std::
     };
     size_t found = k;
     if (!same(k)) {
-      found = 0;
-      while (found < was.size() && !same(found)) ++found;
+      // One printed twice is the first of the two, or neither.
+      const std::vector<size_t>& under = runs_under[is[k].under];
+      if (under.size() != 1 || !same(under[0])) return std::nullopt;
+      found = under[0];
     }
-    if (found == was.size()) return std::nullopt;
-    // One printed twice is the first of the two, or neither.
-    const auto under = [&](const Run& run) { return run.under == is[k].under; };
-    if (found != k && std::count_if(was.begin(), was.end(), under) > 1) return std::nullopt;
     taken[found] = true;
     pairs[k] = found;
   }
