@@ -61,19 +61,21 @@ LinkCost::Left LinkCost::After(const Visit& visit) const {
   return {departure.from.value_or(exit), departure.seconds};
 }
 
-Point LinkCost::EnterPointOf(const Visit& visit) const {
-  return EnterPoint(problem_.plan->paths[static_cast<size_t>(visit.path)], visit.entry);
+LinkCost::Reached LinkCost::BeginOf(const Visit& visit) const {
+  const Point at = EnterPoint(problem_.plan->paths[static_cast<size_t>(visit.path)], visit.entry);
+  if (problem_.links == nullptr) return {at, {}};
+  return {at, ArrivalOf(*problem_.links, visit)};
 }
 
 // Of departure and arrival.
-double LinkCost::SecondsOf(const Left& left, const Visit& visit, bool retracts) const {
+double LinkCost::SecondsOf(const Left& left, const Reached& reached, bool retracts) const {
   if (problem_.links == nullptr || travel_.is_length()) return 0;
-  const LinkSeconds arrival = ArrivalOf(*problem_.links, visit);
-  return retracts ? left.seconds.retracted + arrival.retracted : left.seconds.open + arrival.open;
+  return retracts ? left.seconds.retracted + reached.seconds.retracted
+                  : left.seconds.open + reached.seconds.open;
 }
 
 WallMove LinkCost::MoveTo(const Left& left, const Visit& visit) const {
-  const Point to = EnterPointOf(visit);
+  const Point to = BeginOf(visit).at;
   if (problem_.walls != nullptr) return problem_.walls->MoveOf(left.at, to);
   WallMove move;
   move.length_mm = Distance(left.at, to);
@@ -82,17 +84,17 @@ WallMove LinkCost::MoveTo(const Left& left, const Visit& visit) const {
   return move;
 }
 
-double LinkCost::To(const Left& left, const Visit& visit) const {
+double LinkCost::To(const Left& left, const Reached& reached) const {
   assert(problem_.walls_unit == 1);
-  if (problem_.walls == nullptr) return AtLeastTo(left, visit);
-  const WallCost::Priced move = problem_.walls->Price(left.at, EnterPointOf(visit));
-  return move.cost + SecondsOf(left, visit, move.retracts);
+  if (problem_.walls == nullptr) return AtLeastTo(left, reached);
+  const WallCost::Priced move = problem_.walls->Price(left.at, reached.at);
+  return move.cost + SecondsOf(left, reached, move.retracts);
 }
 
-double LinkCost::AtLeastTo(const Left& left, const Visit& visit) const {
-  const double length_mm = Distance(left.at, EnterPointOf(visit));
+double LinkCost::AtLeastTo(const Left& left, const Reached& reached) const {
+  const double length_mm = Distance(left.at, reached.at);
   const bool retracts = length_mm > problem_.cost.retraction_threshold_mm;
-  return travel_.OfLength(length_mm) + SecondsOf(left, visit, retracts);
+  return travel_.OfLength(length_mm) + SecondsOf(left, reached, retracts);
 }
 
 CostSpec SymmetricCost(CostSpec spec, const LayerLinks& links) {

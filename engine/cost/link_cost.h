@@ -24,6 +24,12 @@ class LinkCost {
     LinkSeconds seconds;
   };
 
+  // Where a move ends, and what it takes to arrive there.
+  struct Reached {
+    Point at;
+    LinkSeconds seconds;
+  };
+
   // `problem` may have no links; what it refers to must outlive this object.
   // REQUIRES: LinksFit(*problem.links), problem.walls_unit == 1.
   explicit LinkCost(const LayerProblem& problem) : problem_(problem), travel_(problem) {}
@@ -32,12 +38,19 @@ class LinkCost {
   Left Before() const { return {problem_.start, problem_.before.seconds}; }
   Left After(const Visit& visit) const;
 
+  // The begin of the path of `visit`.
+  Reached BeginOf(const Visit& visit) const;
+
   // The move from there to the path of `visit`.
   WallMove MoveTo(const Left& left, const Visit& visit) const;
 
   // What the whole link costs, in mm or s; and what it does at least, as if there were no walls.
-  double To(const Left& left, const Visit& visit) const;
-  double AtLeastTo(const Left& left, const Visit& visit) const;
+  double To(const Left& left, const Reached& reached) const;
+  double AtLeastTo(const Left& left, const Reached& reached) const;
+  double To(const Left& left, const Visit& visit) const { return To(left, BeginOf(visit)); }
+  double AtLeastTo(const Left& left, const Visit& visit) const {
+    return AtLeastTo(left, BeginOf(visit));
+  }
 
   // The move to the problem's finish. The departure before it counts nowhere, as the move itself.
   double ToFinish(const Left& left) const {
@@ -45,8 +58,7 @@ class LinkCost {
   }
 
  private:
-  Point EnterPointOf(const Visit& visit) const;
-  double SecondsOf(const Left& left, const Visit& visit, bool retracts) const;
+  double SecondsOf(const Left& left, const Reached& reached, bool retracts) const;
 
   const LayerProblem problem_;
   const TravelCost travel_;

@@ -53,7 +53,8 @@ void LayerSolver::ImproveLinked(const LayerProblem& linked, const ChainLayer& la
   if (layer.greedy) offer(layer.greedy->route);
   if (Expired(layer)) return;
   Budget budget = LayerBudget(layer, AnchorShare());
-  solution.route = ImproveLinks(linked, solution.route, budget);
+  const LinkEffort effort = strategy_->traits().quick ? LinkEffort::kSettle : LinkEffort::kKick;
+  solution.route = ImproveLinks(linked, solution.route, effort, budget);
 }
 
 // Of a small layer: the best route, with which the solution agrees then.

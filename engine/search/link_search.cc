@@ -4,14 +4,17 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/rng.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/link_cost.h"
 #include "engine/cost/neighbor_lists.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/search/bookkeeping/leaf_queue.h"
 #include "engine/search/end_groups.h"
 #include "engine/search/entries/leaf_entries.h"
@@ -29,6 +32,16 @@ constexpr int kNeighbors = 8;
 
 // Runs of up to so many paths come elsewhere.
 constexpr int kLongestRun = 3;
+
+// Runs of up to so many paths change places in a kick; routes of so few paths have none.
+constexpr int kLongestKicked = 10;
+constexpr int kFewestKicked = 4;
+
+// Kicks go on while so much work for each path gains this share of the cost. Work is counted in
+// questions about links, of 25 ns; so long is moving this many numbers.
+constexpr int64_t kWindowEach = 8'000;
+constexpr double kLeastGain = 0.005;
+constexpr size_t kNumbersMoved = 8;
 
 // The order alone is searched here, whose own costs nobody asks for.
 LayerProblem OrderOf(const LayerProblem& problem) {
@@ -50,12 +63,14 @@ class Search {
         neighbors_(FindNeighbors(tree_, groups_, kNeighbors, budget)),
         state_(order_, tree_, entries_),
         cost_(problem),
+        walls_(problem.walls),
         queue_(tree_.path_count(), tree_.leaf_count()),
         onward_{std::vector<double>(Index(tree_.leaf_count())),
                 std::vector<double>(Index(tree_.leaf_count()))},
         backward_(onward_) {}
 
-  Route Run(const Route& route) {
+  Route Run(const Route& route, LinkEffort effort) {
+    NoteEnds();
     state_.Load(route, &budget_);
     for (int i = 0; i < state_.last_position(); ++i) {
       if (budget_.Exhausted()) return route;
@@ -63,14 +78,67 @@ class Search {
     }
     Sum(0);
     for (int i = 1; i < state_.last_position(); ++i) queue_.Push(state_.leaf_at(i));
-    while (!queue_.empty() && !budget_.Exhausted()) {
-      const int leaf = queue_.Pop();
-      while (!budget_.Exhausted() && Improve(leaf)) state_.Commit();
-    }
+    Settle();
+    if (effort == LinkEffort::kKick) KickOn();
     return state_.Unload();
   }
 
  private:
+  // Makes better what lies around the paths in the queue, until nothing does.
+  void Settle() {
+    while (!queue_.empty() && !budget_.Exhausted()) {
+      const int leaf = queue_.Pop();
+      while (!budget_.Exhausted() && Improve(leaf)) continue;
+    }
+  }
+
+  double Cost() const { return onward_.sums[Index(state_.last_position())]; }
+
+  // Kicks, until the last ones were not worth it.
+  void KickOn() {
+    state_.Commit();
+    const int paths = state_.last_position() - 1;
+    if (paths < kFewestKicked) return;
+    Rng rng(1);
+    Direction onward = onward_;
+    Direction backward = backward_;
+    double cost = Cost();
+    double cost_before = cost;
+    int64_t work_before = Work();
+    while (!budget_.Exhausted()) {
+      if (Kick(rng)) Settle();
+      if (queue_.empty() && Cost() <= cost) {
+        state_.Commit();
+        onward = onward_;
+        backward = backward_;
+        cost = Cost();
+      } else {
+        queue_.Clear();
+        state_.UndoTo(0);
+        onward_ = onward;
+        backward_ = backward;
+      }
+      asked_ += 1 + static_cast<int64_t>(Index(paths) / kNumbersMoved);
+      if (Work() - work_before < kWindowEach * paths) continue;
+      if (cost_before - cost < kLeastGain * cost_before) return;
+      cost_before = cost;
+      work_before = Work();
+    }
+  }
+
+  int64_t Work() const { return asked_ + (walls_ != nullptr ? 2 * walls_->work() : 0); }
+
+  // Two short runs change places, whatever it costs.
+  bool Kick(Rng& rng) {
+    const int first = rng.Between(1, state_.last_position() - 2);
+    const int middle = first + rng.Between(1, kLongestKicked);
+    const int last = middle + rng.Between(0, kLongestKicked - 1);
+    const SegmentMove move{Kind::kExchange, first, middle, last};
+    if (last >= state_.last_position() || !state_.Allows(move)) return false;
+    Do(move, {});
+    return true;
+  }
+
   // A leaf and how it is entered.
   struct Placed {
     int leaf;
@@ -94,20 +162,32 @@ class Search {
     return {leaf, turns ? entries_.Reversed(leaf, entry) : entry};
   }
 
-  // How the head leaves. REQUIRES: `from` is not the finish.
-  LinkCost::Left After(Placed from) const {
-    if (from.leaf == tree_.start()) return cost_.Before();
-    return cost_.After(entries_.VisitOf(from.leaf, from.entry));
+  // How the head leaves each path, and comes to it.
+  void NoteEnds() {
+    for (int leaf = 0; leaf < tree_.leaf_count(); ++leaf) {
+      if (budget_.Exhausted()) return;
+      const bool is_path = leaf != tree_.start() && leaf != tree_.finish();
+      for (int e = entries_.first(leaf); e < entries_.first(leaf) + entries_.count(leaf); ++e) {
+        if (Index(e) >= ends_.size()) ends_.resize(Index(e) + 1);
+        if (leaf == tree_.start()) ends_[Index(e)].left = cost_.Before();
+        if (!is_path) continue;
+        const Visit visit = entries_.VisitOf(leaf, e);
+        ends_[Index(e)] = {cost_.After(visit), cost_.BeginOf(visit)};
+      }
+    }
   }
 
   // REQUIRES: `from` is not the finish, `to` is not the start.
   double Link(Placed from, Placed to) const {
-    if (to.leaf == tree_.finish()) return cost_.ToFinish(After(from));
-    return cost_.To(After(from), entries_.VisitOf(to.leaf, to.entry));
+    ++asked_;
+    const LinkCost::Left& left = ends_[Index(from.entry)].left;
+    if (to.leaf == tree_.finish()) return cost_.ToFinish(left);
+    return cost_.To(left, ends_[Index(to.entry)].begin);
   }
   double LeastLink(Placed from, Placed to) const {
+    ++asked_;
     if (to.leaf == tree_.finish()) return 0;
-    return cost_.AtLeastTo(After(from), entries_.VisitOf(to.leaf, to.entry));
+    return cost_.AtLeastTo(ends_[Index(from.entry)].left, ends_[Index(to.entry)].begin);
   }
 
   // The link from `place` to the next one, and that of the same two backwards.
@@ -119,6 +199,7 @@ class Search {
 
   // Those from `place` on have changed.
   void Sum(int place) {
+    asked_ += static_cast<int64_t>((onward_.sums.size() - Index(place)) / kNumbersMoved);
     for (Direction* way : {&onward_, &backward_}) {
       for (size_t i = Index(place); i + 1 < way->sums.size(); ++i) {
         way->sums[i + 1] = way->sums[i] + way->links[i];
@@ -180,6 +261,7 @@ class Search {
   double ChooseEntry(double delta, Placed before, Placed behind, Piece& alone) const {
     const int leaf = state_.leaf_at(alone.places.first);
     double least = -delta - kImprovementTolerance;  // what the two links may cost
+    if (least <= 0) return std::numeric_limits<double>::infinity();
     for (int e = entries_.first(leaf); e < entries_.first(leaf) + entries_.count(leaf); ++e) {
       const Placed placed{leaf, e};
       if (LeastLink(before, placed) + LeastLink(placed, behind) >= least) continue;
@@ -214,8 +296,13 @@ class Search {
     std::array<Piece, 2> both = {Piece{order[0], {}}, Piece{order[1], {}}};
     const absl::Span<Piece> runs = absl::MakeSpan(both).first(Index(move.segment_count()));
     if (BestDelta(move.first, move.last, runs) > -kImprovementTolerance) return false;
-    const Piece& alone = runs[0].entry ? runs[0] : runs.back();
-    const int leaf = state_.leaf_at(alone.places.first);
+    Do(move, runs[0].entry ? runs[0] : runs.back());
+    return true;
+  }
+
+  // `alone`: the path alone in its run, if it has another entry.
+  void Do(const SegmentMove& move, const Piece& alone) {
+    const int leaf = alone.entry ? state_.leaf_at(alone.places.first) : 0;
     state_.Apply(move);
     if (alone.entry) state_.SetEntry(leaf, *alone.entry);
     MoveLinks(move);
@@ -226,7 +313,6 @@ class Search {
       queue_.Push(state_.leaf_at(behind));
     }
     Sum(move.first - 1);
-    return true;
   }
 
   bool TryEntry(int position) {
@@ -292,6 +378,11 @@ class Search {
             Try({Kind::kExchangeReverseSecond, first, middle, last}));
   }
 
+  struct Ends {
+    LinkCost::Left left;
+    LinkCost::Reached begin;
+  };
+
   // [place] the link from there to the next one, or from the next one to it in the route backwards,
   // and what all those before it cost together.
   struct Direction {
@@ -307,6 +398,9 @@ class Search {
   const NeighborLists neighbors_;
   SearchState state_;
   const LinkCost cost_;
+  const WallCost* const walls_;
+  std::vector<Ends> ends_;  // [entry]
+  mutable int64_t asked_ = 0;
   LeafQueue queue_;
   Direction onward_;
   Direction backward_;
@@ -314,9 +408,10 @@ class Search {
 
 }  // namespace
 
-Route ImproveLinks(const LayerProblem& problem, const Route& route, Budget& budget) {
+Route ImproveLinks(const LayerProblem& problem, const Route& route, LinkEffort effort,
+                   Budget& budget) {
   assert(problem.links != nullptr && LinksFit(*problem.links, *problem.plan));
-  return route.empty() ? route : Search(problem, budget).Run(route);
+  return route.empty() ? route : Search(problem, budget).Run(route, effort);
 }
 
 }  // namespace traverse

@@ -37,20 +37,20 @@ class LinkCosts : public ::testing::Test {
 TEST_F(LinkCosts, AreOfDepartureMoveAndArrival) {
   ASSERT_TRUE(LinksFit(links_, plan_));
   const LinkCost cost(problem_);
-  EXPECT_DOUBLE_EQ(cost.To(cost.Before(), {0, 0}), 0.5);
-  EXPECT_DOUBLE_EQ(cost.To(cost.Before(), {0, 1}), 0.7 + 4 + 3);
+  EXPECT_DOUBLE_EQ(cost.To(cost.Before(), Visit{0, 0}), 0.5);
+  EXPECT_DOUBLE_EQ(cost.To(cost.Before(), Visit{0, 1}), 0.7 + 4 + 3);
   // From the end of the wipe, without a retraction and with one.
-  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 0}), {1, 0}), 0.1 + 0.5 + 1);
-  EXPECT_NEAR(cost.To(cost.After({0, 0}), {1, 1}), 0.4 + 4.0311 + 3 + 2, 1e-4);
-  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 1}), {1, 1}), 0.2 + 1 + 1);
+  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 0}), Visit{1, 0}), 0.1 + 0.5 + 1);
+  EXPECT_NEAR(cost.To(cost.After({0, 0}), Visit{1, 1}), 0.4 + 4.0311 + 3 + 2, 1e-4);
+  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 1}), Visit{1, 1}), 0.2 + 1 + 1);
   // An open path is left at its other end.
-  EXPECT_DOUBLE_EQ(cost.To(cost.After({1, 1}), {0, 0}), 1);
+  EXPECT_DOUBLE_EQ(cost.To(cost.After({1, 1}), Visit{0, 0}), 1);
 }
 
 TEST_F(LinkCosts, HaveNoSecondsWhereTheCostIsALength) {
   problem_.cost = CostSpec();
   const LinkCost cost(problem_);
-  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 0}), {1, 0}), 5);
+  EXPECT_DOUBLE_EQ(cost.To(cost.After({0, 0}), Visit{1, 0}), 5);
   EXPECT_DOUBLE_EQ(LeastOf(problem_).seconds, -5);
 }
 

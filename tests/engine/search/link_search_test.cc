@@ -11,11 +11,15 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/wall_cost.h"
 #include "engine/model/links.h"
 #include "engine/model/plan.h"
 #include "engine/model/walls.h"
+#include "engine/validator.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/step_clock.h"
 
 namespace traverse {
 namespace {
@@ -30,7 +34,7 @@ class LinkSearch : public ::testing::Test {
   LinkSearch() {
     plan_.nodes.resize(1);
     plan_.nodes[0].kind = PlanNode::Kind::kAnyOrder;
-    for (int i = 0; i < kSide * kSide; ++i) AddRing(i, {8.0 * (i % kSide), 8.0 * (i / kSide)});
+    for (int i = 0; i < kSide * kSide; ++i) AddRing({8.0 * (i % kSide), 8.0 * (i / kSide)});
     problem_.plan = &plan_;
     problem_.cost = {.kind = CostSpec::Kind::kTime,
                      .speed_mm_s = 150,
@@ -43,7 +47,8 @@ class LinkSearch : public ::testing::Test {
     problem_.links = &links_;
   }
 
-  void AddRing(int i, Point center) {
+  void AddRing(Point center) {
+    const auto i = static_cast<int>(plan_.paths.size());
     std::vector<Point> points;
     for (size_t k = 0; k < kVertices; ++k) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kVertices;
@@ -72,9 +77,36 @@ TEST_F(LinkSearch, AsksAboutWallsWhereTheyMatter) {
   const double cost = RouteCost(problem_, given);
   const int64_t before = walls.work();
   Budget budget;
-  const Route found = ImproveLinks(problem_, given, budget);
+  const Route found = ImproveLinks(problem_, given, LinkEffort::kSettle, budget);
   EXPECT_LT(RouteCost(problem_, found), 0.9 * cost);
   EXPECT_LT(walls.work() - before, 40'000 * kSide * kSide);
+}
+
+// Where no small change is a gain, several at once may be.
+TEST_F(LinkSearch, KicksFindWhatNoSmallChangeDoes) {
+  Rng rng(1);
+  for (int i = 0; i < 400; ++i) AddRing({90 * rng.Unit(), 90 * rng.Unit()});
+  problem_.cost.retraction_threshold_mm = 2;
+  const Route given = GivenRoute(plan_);
+  Budget budget;
+  const Route settled = ImproveLinks(problem_, given, LinkEffort::kSettle, budget);
+  const Route kicked = ImproveLinks(problem_, given, LinkEffort::kKick, budget);
+  ASSERT_OK(ValidateRoute(plan_, kicked));
+  EXPECT_LT(RouteCost(problem_, kicked), 0.98 * RouteCost(problem_, settled));
+}
+
+// A kick that is not finished is taken back.
+TEST_F(LinkSearch, StopsWithNoWorseRouteWhileItKicks) {
+  const Route given = GivenRoute(plan_);
+  Budget endless;
+  const Route settled = ImproveLinks(problem_, given, LinkEffort::kSettle, endless);
+  for (int64_t steps = 100; steps < 10'000; steps *= 3) {
+    const StepClock clock;
+    Budget budget(nullptr, StepClock::At(steps), {}, &clock);
+    const Route route = ImproveLinks(problem_, settled, LinkEffort::kKick, budget);
+    ASSERT_OK(ValidateRoute(plan_, route));
+    EXPECT_LE(RouteCost(problem_, route), RouteCost(problem_, settled) + 1e-9);
+  }
 }
 
 // Each question about a wall may take long.
@@ -85,7 +117,7 @@ TEST_F(LinkSearch, StopsBetweenTwoQuestions) {
   CancelToken cancel;
   cancel.Cancel();
   Budget budget(&cancel, std::nullopt);
-  EXPECT_EQ(ImproveLinks(problem_, given, budget), given);
+  EXPECT_EQ(ImproveLinks(problem_, given, LinkEffort::kKick, budget), given);
   EXPECT_EQ(walls.work(), 0);
 }
 
