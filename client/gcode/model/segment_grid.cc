@@ -53,8 +53,11 @@ SegmentGrid::SegmentGrid(std::vector<Segment> segments, double cell_mm)
   const double height = max_y - min_y_;
   const size_t most_entries = kCellsPerSegment * (segments_.size() + 16);
   const auto most_cells = static_cast<double>(std::min(kMaxCells, most_entries));
+  // More than a kilometer in one layer is none of a print.
+  constexpr double kMostLengthOfEach = 16;
+  const double most_length = kMostLengthOfEach * static_cast<double>(segments_.size()) + (1 << 20);
   while ((width / cell_ + 1) * (height / cell_ + 1) > most_cells ||
-         length / cell_ > static_cast<double>(most_entries)) {
+         length / cell_ > std::min(static_cast<double>(most_entries), most_length)) {
     cell_ *= 2;
   }
   cells_per_mm_ = 1 / cell_;

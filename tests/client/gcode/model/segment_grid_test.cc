@@ -75,6 +75,18 @@ TEST(SegmentGridTest, LongSegmentsGetLargerCells) {
   EXPECT_LE(grid.entry_count(), SegmentGrid::kCellsPerSegment * (segments.size() + 16));
 }
 
+// A megabyte may have tens of thousands of lines across the plate.
+TEST(SegmentGridTest, MoreThanAPrintHasTakesFewCellsEach) {
+  std::vector<Segment> segments;
+  for (uint32_t path = 0; path < 20'000; ++path) {
+    segments.push_back({{0, 0.01 * path}, {200, 0.01 * path}, path});
+  }
+
+  const SegmentGrid grid(segments);
+
+  EXPECT_LT(grid.entry_count(), 2'000'000u);
+}
+
 TEST(SegmentGridTest, LooksAtNoPathsThatAreNotWanted) {
   const SegmentGrid grid({{{0, 0}, {5, 0}, 0}, {{0, 0.1}, {5, 0.1}, 1}, {{0, 0.2}, {5, 0.2}, 2}});
   const auto first_two = [](uint32_t s, uint32_t t) {
