@@ -137,6 +137,29 @@ def tiny_loops(n):
     return one_layer(WALL + "".join(square(10 + i % 100 * .004, 10 + i // 100 * .004, .003) for i in range(n)))
 
 
+def open_travel(x, y):
+    return f"G1 X{x:.4f} Y{y:.4f} F9000\nG1 F1200\n"
+
+
+@dimension
+def open_tiny_loops(n):
+    """In a third of a millimeter, with travel between them that does not retract."""
+    loops = ""
+    for i in random.Random(3).sample(range(n), n):
+        x, y = i % 100 * .003, i * .3 / n
+        loops += open_travel(x, y) + f"G1 X{x + .003:.4f} E.1\nG1 Y{y + .003:.4f} E.1\nG1 X{x:.4f} Y{y:.4f} E.1\n"
+    return one_layer(WALL + loops)
+
+
+@dimension
+def open_between_lines(n):
+    """Travel that does not retract, along walls of two millimeters together."""
+    walls = "".join(line(10, 20 + i * 2 / n, 70, 20 + i * 2 / n) for i in range(n))
+    return one_layer(WALL + walls + INFILL + "".join(
+        open_travel(10.5 + i % 2 * 59, 20 + (i + .25) * 2 / n) + f"G1 Y{20 + (i + .3) * 2 / n:.5f} E.1\n"
+        for i in random.Random(5).sample(range(n), n)))
+
+
 @dimension
 def far_away(n):
     """Small loops, and one line that is very far from them."""
