@@ -178,9 +178,9 @@ PartStep LinkCutter::StepOf(size_t i, Micro pulled) const {
   step.spiral = move.kind == MoveKind::kUp ? move.spiral : 0;
   step.filament = move.filament;
   if (move.kind == MoveKind::kPriming) step.pulled = pulled;
-  // To a higher path it may lead at any height up to that.
-  step.behind_um = Um(move.z_to_mm - to_mm_);
-  if (to_mm_ >= from_mm_) step.behind_um = std::max<int64_t>(step.behind_um, 0);
+  // To a higher path it may lead at any height up to that, and a scarf seam begins lower than where
+  // it leads to.
+  step.behind_um = std::max<int64_t>(Um(move.z_to_mm - to_mm_), 0);
   step.above_um = to_mm_ >= from_mm_ ? step.behind_um : Um(move.z_to_mm - from_mm_);
   if (move.kind == MoveKind::kTravel && move.open) step.length_mm = move.length_mm();
   return step;

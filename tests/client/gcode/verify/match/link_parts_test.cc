@@ -71,5 +71,27 @@ TEST(LinkCutter, CutsAHostileLinkNoMoreOftenThanALongOne) {
   EXPECT_LE(CutsOf(Lifting(1000)), 4u);
 }
 
+// The arrival at a scarf seam of a layer at .4 mm, from `from_mm`.
+LinkPart ArrivalAtSeam(double from_mm) {
+  TraceChunk moves;
+  AddMove(MoveKind::kRetraction, 0, from_mm, -100, moves);
+  moves.moves.back().z_from_mm = from_mm;
+  AddMove(MoveKind::kUp, 0, 9, 0, moves);
+  AddMove(MoveKind::kTravel, 20, 9, 0, moves);
+  AddMove(MoveKind::kDown, 20, .4, 0, moves);
+  AddMove(MoveKind::kPriming, 20, .4, 100, moves);
+  AddMove(MoveKind::kDown, 20, .22, 0, moves);
+  return LinkCutter(ChunkOf(moves), 0, 0).Parts().back();
+}
+
+TEST(KnownParts, TheArrivalAtAScarfSeamIsTheSameFromAnyHeight) {
+  KnownParts known;
+  known.Add(ArrivalAtSeam(.4));
+
+  EXPECT_EQ(ArrivalAtSeam(8).role, LinkPart::kArrival);
+  EXPECT_TRUE(known.Has(ArrivalAtSeam(.2)));
+  EXPECT_TRUE(known.Has(ArrivalAtSeam(8)));
+}
+
 }  // namespace
 }  // namespace traverse::gcode
