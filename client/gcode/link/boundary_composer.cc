@@ -21,21 +21,29 @@ bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
   return from_.as_given() && from_.placement().block + 1 == boundary;
 }
 
-// The link that leads to the path in the file, if the path begins otherwise beside its layer's
-// height than the one behind `link`, as scarf seams do, and is arrived at in this link as there.
+// The link that leads to the path in the file, or else to another one that begins as low, if the
+// path begins otherwise beside its layer's height than the one behind `link`, as scarf seams do,
+// and is arrived at in this link as there.
 std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
-  const Block& given = file_.blocks[*form_.boundary];
+  const auto rise = [this](uint32_t block) {
+    return file_.blocks[block].last.z - file_.blocks[block].first.z;
+  };
   const uint32_t to = to_.placement().block;
-  if (to_.last().z - to_.first().z == given.last.z - given.first.z) return nullptr;
+  if (rise(to) == rise(*form_.boundary)) return nullptr;
   const bool marks = std::any_of(
       link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {
         return step.kind == StepKind::kLabel || step.kind == StepKind::kLayerMark ||
                step.kind == StepKind::kStay;
       });
-  std::shared_ptr<const Link> own = parts_.LinkTo(to);
-  const bool alike = own->arrival >= 0 && own->SameRetraction(link) &&
-                     own->arrives_retracted == link.arrives_retracted;
-  return alike && !marks ? own : nullptr;
+  if (marks) return nullptr;
+  for (const auto& like : {std::optional(to), donors_.Find(to, link.retracts())}) {
+    if (!like || rise(*like) != rise(to)) continue;
+    std::shared_ptr<const Link> own = parts_.LinkTo(*like);
+    const bool alike = own->arrival >= 0 && own->SameRetraction(link) &&
+                       own->arrives_retracted == link.arrives_retracted;
+    if (alike) return own;
+  }
+  return nullptr;
 }
 
 // As in the file; but what paths state before the travel that leads to them, they state so here.
@@ -119,15 +127,6 @@ void LinkComposer::TravelToBoundary(const Link& link) {
   if (lift > 0) link_.Lift(z, link.lift_feed);
 }
 
-// Of a step of an arrival: where this path begins, if that of the file begins there; else as high
-// above the layer as in the file. Scarf seams begin lower than their layer.
-Decimal LinkComposer::HeightBehindTravel(const LinkStep& step) const {
-  const Block& given = file_.blocks[*form_.boundary];
-  if (to_.placement().block == *form_.boundary) return step.to.z;
-  if (step.to.z == given.first.z) return to_.first().z;
-  return std::max(to_.first().z, to_.last().z + step.to.z - given.last.z);
-}
-
 void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
   const LinkStep& step = link.steps[i];
   const std::string_view raw = step.line.Raw(file_.text);
@@ -148,7 +147,9 @@ void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
     case StepKind::kLift:
       // A departure of another link may have lifted the head higher.
       if (link.Leaves(i) && step.to.z >= step.from.z && link_.at().z > step.to.z) return;
-      return LiftAs(step, link.Leaves(i) ? step.to.z : HeightBehindTravel(step));
+      if (link.Leaves(i) || to_.placement().block == *form_.boundary)
+        return LiftAs(step, step.to.z);
+      return LiftAs(step, HeightBehindTravel(step, link));
     case StepKind::kSlot:
       // What another path is printed under is set at its beginning, once.
       if ((step.slots & kDynamicsSlots) != 0 &&

@@ -95,7 +95,7 @@ Link LinkComposer::LikeHidden() const {
   const Link like = LikeWhat(true);
   Link form;
   form.travel_state = like.travel_state;
-  form.z_before = form.z_behind = form.top = to_.first().z;
+  form.z_before = form.z_behind = form.layer_behind = form.top = to_.first().z;
   if (like.arrival >= 0) {
     form.steps.push_back(like.arriving());
     form.arrival = 0;
@@ -289,8 +289,21 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
 
 void LinkComposer::Arrive(const Link& like) {
   for (size_t i = static_cast<size_t>(like.arrival + 1); i < like.steps.size(); ++i) {
-    Move(Balanced(like.steps[i], like), like.z_behind, to_.first().z);
+    const LinkStep& step = like.steps[i];
+    if (step.kind == StepKind::kLift) {
+      LiftAs(step, HeightBehindTravel(step, like));
+    } else {
+      Move(Balanced(step, like), 0, 0);
+    }
   }
+}
+
+// Of a step of the arrival of `like`: where this path begins, if that behind `like` begins there;
+// else as high above the layer as in the file.
+Decimal LinkComposer::HeightBehindTravel(const LinkStep& step, const Link& like) const {
+  const Decimal begin = to_.first().z;
+  if (step.to.z == like.z_behind) return begin;
+  return std::max(begin, std::max(begin, to_.last().z) + step.to.z - like.layer_behind);
 }
 
 // Step of `like`; a prime pushes as much more, or less, than was pulled back as in the file. Where

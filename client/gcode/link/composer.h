@@ -53,7 +53,7 @@ class LinkComposer {
   void ComposeBoundary();
   void ComposeBoundaryStep(const Link& link, size_t i);
   void TravelToBoundary(const Link& link);
-  Decimal HeightBehindTravel(const LinkStep& step) const;
+  Decimal HeightBehindTravel(const LinkStep& step, const Link& like) const;
 
   Link LikeWhat(bool retracts) const;
   Link LikeHidden() const;

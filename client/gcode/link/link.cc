@@ -163,6 +163,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   Link link;
   link.z_before = before.last.z;
   link.z_behind = behind.first.z;
+  link.layer_behind = std::max(behind.first.z, behind.last.z);
   link.departs = MayDepart(file, index);
   PartStart start = StartBehind(file, before);
   Interpreter interpreter(std::string_view(file.text).substr(0, behind.begin), before.end,

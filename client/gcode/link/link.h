@@ -51,6 +51,9 @@ struct Link {
   Decimal z_before = 0;
   Decimal z_behind = 0;
 
+  // The height of the layer behind: scarf seams begin lower, at z_behind.
+  Decimal layer_behind = 0;
+
   // The arrival runs, or begins, this much above both of them.
   Decimal lift = 0;
 

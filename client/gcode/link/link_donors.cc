@@ -53,10 +53,11 @@ LinkDonors::LinkDonors(const GcodeFile& file)
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
     if (!MayFollow(i) || !Travels(i)) continue;
     const Kind kind = KindOf(i);
-    donors_[kind].push_back(i);
+    const Decimal rise = RiseOf(i);
+    donors_[kind][rise].push_back(i);
     first_.emplace(std::pair(kind, layer_of_[i]), i);
-    if (file.blocks[i].lift > 0) lifted_[kind].push_back(i);
-    if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind].push_back(i);
+    if (file.blocks[i].lift > 0) lifted_[kind][rise].push_back(i);
+    if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind][rise].push_back(i);
     CountLifts(i);
   }
 }
@@ -93,16 +94,15 @@ bool LinkDonors::IsOwnExample(uint32_t block, bool retracts, bool wipes) const {
 
 std::optional<uint32_t> LinkDonors::Find(uint32_t block, bool retracts, bool wipes) const {
   const Kind kind{file_.blocks[block].mode, retracts};
-  if (wipes) {
-    const auto wiping = wiping_.find(kind);
-    if (wiping != wiping_.end()) return FindAmong(wiping->second, block);
-  }
-  const auto all = donors_.find(kind);
-  if (all == donors_.end()) return std::nullopt;
-  const std::optional<uint32_t> nearest = FindAmong(all->second, block);
+  if (wipes && wiping_.contains(kind)) return FindAmong(wiping_, kind, block);
+  const std::optional<uint32_t> nearest = FindAmong(donors_, kind, block);
   if (!nearest || !LacksLift(*nearest)) return nearest;
-  const auto lifted = lifted_.find(kind);
-  return lifted == lifted_.end() ? nearest : FindAmong(lifted->second, block);
+  const std::optional<uint32_t> lifted = FindAmong(lifted_, kind, block);
+  return lifted ? lifted : nearest;
+}
+
+Decimal LinkDonors::RiseOf(uint32_t block) const {
+  return file_.blocks[block].last.z - file_.blocks[block].first.z;
 }
 
 std::optional<uint32_t> LinkDonors::PaceFor(uint32_t block, uint32_t link) const {
@@ -116,9 +116,13 @@ std::optional<uint32_t> LinkDonors::PaceFor(uint32_t block, uint32_t link) const
   return std::nullopt;
 }
 
-std::optional<uint32_t> LinkDonors::FindAmong(const std::vector<uint32_t>& links,
-                                              uint32_t block) const {
-  if (links.empty()) return std::nullopt;
+std::optional<uint32_t> LinkDonors::FindAmong(const std::map<Kind, ByRise>& donors,
+                                              const Kind& kind, uint32_t block) const {
+  const auto of_kind = donors.find(kind);
+  if (of_kind == donors.end()) return std::nullopt;
+  const auto as_steep = of_kind->second.find(RiseOf(block));
+  const std::vector<uint32_t>& links =
+      as_steep != of_kind->second.end() ? as_steep->second : of_kind->second.begin()->second;
   const auto behind = std::upper_bound(links.begin(), links.end(), block);
   if (behind == links.begin()) return *behind;
   const uint32_t before = *(behind - 1);

@@ -19,9 +19,10 @@ class LinkDonors {
 
   // A link that may be the template for travel to `block`: without marks, in the modes of `block`,
   // between two paths of the part itself that do not meet (no scripts, no towers), which retracts
-  // or not as asked, and wipes if `wipes` and any link does. Of those the nearest in the layer of
-  // `block`, else the nearest before it, else the nearest after it. If the file lifts in most such
-  // links, one that lifts. Unset if there is none.
+  // or not as asked, and wipes if `wipes` and any link does. Of those one to a path that rises as
+  // much, as scarf seams do, if there is any; the nearest in the layer of `block`, else the nearest
+  // before it, else the nearest after it. If the file lifts in most such links, one that lifts.
+  // Unset if there is none.
   std::optional<uint32_t> Find(uint32_t block, bool retracts, bool wipes = false) const;
 
   // Whether new travel to `block` that retracts or not, and wipes if `wipes`, is like the travel
@@ -51,17 +52,22 @@ class LinkDonors {
   // The kind of a link: its modes, and whether it retracts.
   using Kind = std::pair<uint16_t, bool>;
 
+  // Ascending links by how much the path behind them rises.
+  using ByRise = std::map<Decimal, std::vector<uint32_t>>;
+
   bool Travels(uint32_t block) const;
   Kind KindOf(uint32_t block) const;
-  std::optional<uint32_t> FindAmong(const std::vector<uint32_t>& links, uint32_t block) const;
+  Decimal RiseOf(uint32_t block) const;
+  std::optional<uint32_t> FindAmong(const std::map<Kind, ByRise>& links, const Kind& kind,
+                                    uint32_t block) const;
   void CountLifts(uint32_t link);
 
   const GcodeFile& file_;
-  std::vector<uint32_t> layer_of_;                       // [block]
-  std::vector<bool> may_follow_;                         // [block]
-  std::map<Kind, std::vector<uint32_t>> donors_;         // ascending
-  std::map<Kind, std::vector<uint32_t>> lifted_;         // those of them that lift
-  std::map<Kind, std::vector<uint32_t>> wiping_;         // that wipe
+  std::vector<uint32_t> layer_of_;  // [block]
+  std::vector<bool> may_follow_;    // [block]
+  std::map<Kind, ByRise> donors_;
+  std::map<Kind, ByRise> lifted_;                        // those of them that lift
+  std::map<Kind, ByRise> wiping_;                        // that wipe
   std::map<std::pair<Kind, uint32_t>, uint32_t> first_;  // by kind and layer
   // By kind and layer: links that lift, less those that do not.
   std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
