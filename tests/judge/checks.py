@@ -340,17 +340,20 @@ def stringing(before, after, options):
 
 
 def layers_of(side):
-    """Runs of deposits at one height, as lists of moves. What rises to no more than that on the way is a scarf seam of
-    the same layer."""
-    layers, height = [], None
+    """Runs of deposits at one height, as lists of moves. A scarf seam, which rises to the height of its layer, is part of
+    that, wherever in the layer it comes."""
+    layers, rising, height = [], [], None
     for move in side.deposits():
         z = round(max(move.z0, move.z1), 3)
-        of_seam = height is not None and move.z0 < move.z1 and 0 <= height - z < SCARF_MM
-        if z != height and not of_seam:
+        if move.z0 < move.z1 and (height is None or not 0 <= height - z < SCARF_MM):
+            rising.append(move)
+            continue
+        if move.z0 >= move.z1 and z != height:
             layers.append((z, []))
             height = z
-        layers[-1][1].append(move)
-    return layers
+        layers[-1][1].extend(rising + [move])
+        rising = []
+    return layers + ([(round(rising[-1].z1, 3), rising)] if rising else [])
 
 
 def islands_of(moves, size):

@@ -86,8 +86,11 @@ class Checks(unittest.TestCase):
         seam = ["G1 X60 Y10 F9000", "G1 Z0.25 F9000", "G1 F1800", "G1 X60 Y15 Z0.3 E0.1", "G1 X60 Y20 Z0.4 E0.1"]
         layers = checks.layers_of(print_trace.trace("\n".join(
             HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, block(10, 0.4), seam, block(40, 0.4)))))
+        begun = checks.layers_of(print_trace.trace("\n".join(
+            HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, seam, block(10, 0.4), block(40, 0.4)))))
 
         self.assertEqual([(z, len(moves)) for z, moves in layers], [(0.2, 4), (0.4, 10)])
+        self.assertEqual([(z, len(moves)) for z, moves in begun], [(0.2, 4), (0.4, 10)])
 
     def test_less_rest_is_found_where_the_policy_keeps_it(self):
         after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
