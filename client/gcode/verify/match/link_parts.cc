@@ -241,6 +241,16 @@ void KnownParts::Add(LinkPart part) {
   for (PartStep& step : part.steps) spirals |= std::exchange(step.spiral, 0) != 0;
   if (spirals) AddAsItIs(part);
   if (part.role == LinkPart::kSpeed) return;
+  // To the height of the next path there is no way up within a layer.
+  const auto rises = [](const PartStep& step) {
+    return step.kind == MoveKind::kUp && step.behind_um <= kSlackUm;
+  };
+  const auto stays = std::find_if_not(part.steps.begin(), part.steps.end(), rises);
+  if (stays != part.steps.begin() && stays != part.steps.end()) {
+    LinkPart level = part;
+    level.steps.assign(stays, part.steps.end());
+    AddAsItIs(level);
+  }
   part.in_place = true;
   if (std::erase_if(part.steps, IsOfLift) > 0) AddAsItIs(part);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -91,6 +92,32 @@ TEST(KnownParts, TheArrivalAtAScarfSeamIsTheSameFromAnyHeight) {
   EXPECT_EQ(ArrivalAtSeam(8).role, LinkPart::kArrival);
   EXPECT_TRUE(known.Has(ArrivalAtSeam(.2)));
   EXPECT_TRUE(known.Has(ArrivalAtSeam(8)));
+}
+
+// What leads away from a path at `from_mm` to one at .4 mm: first up to that, where it is higher.
+LinkPart DepartureFrom(double from_mm) {
+  TraceChunk moves;
+  AddMove(MoveKind::kUp, 0, .4, 0, moves);
+  moves.moves.back().z_from_mm = from_mm;
+  if (from_mm == .4) moves.moves.clear();
+  AddMove(MoveKind::kRetraction, 0, .4, -100, moves);
+  moves.moves.back().z_from_mm = .4;
+  AddMove(MoveKind::kTravel, 20, .4, 0, moves);
+  AddMove(MoveKind::kPriming, 20, .4, 100, moves);
+  const auto parts = LinkCutter(ChunkOf(moves), 0, 0).Parts();
+  const auto departs = [](const LinkPart& part) { return part.role == LinkPart::kDeparture; };
+  return *std::find_if(parts.begin(), parts.end(), departs);
+}
+
+TEST(KnownParts, ADepartureToTheNextLayerIsTheSameWithinALayerWithoutTheWayUp) {
+  KnownParts known;
+  known.Add(DepartureFrom(.2));
+  KnownParts within;
+  within.Add(DepartureFrom(.4));
+
+  EXPECT_EQ(DepartureFrom(.2).steps.size(), 2u);
+  EXPECT_TRUE(known.Has(DepartureFrom(.4)));
+  EXPECT_FALSE(within.Has(DepartureFrom(.2)));
 }
 
 }  // namespace
