@@ -51,10 +51,11 @@ TEST(Cancellation, FreesTheWorkersWithin50Milliseconds) {
   TestService service;
   ServiceCore& core = service.server().core();
   grpc::ClientContext context;
+  const ProcessorWatch worked;
   const auto reader = service.stub().OptimizeBatch(&context, HardBatch(20));
-  EXPECT_TRUE(service.Eventually([&] { return core.pool.busy() == 2; }));
-  absl::SleepFor(absl::Milliseconds(100));
-  EXPECT_EQ(core.pool.busy(), 2) << "the layers are too easy";
+  // Beyond the short stages before the searches.
+  const auto both_search = [&] { return worked.Seconds() > 0.2 && core.pool.busy() == 2; };
+  EXPECT_TRUE(service.Eventually(both_search)) << "the layers are too easy";
 
   const ProcessorWatch watch;
   context.TryCancel();
