@@ -33,6 +33,9 @@ constexpr int kNeighbors = 8;
 // Runs of up to so many paths come elsewhere.
 constexpr int kLongestRun = 3;
 
+// A change moves up to so many paths, so that all changes take time that is linear in the paths.
+constexpr int kMostMoved = 25'000;
+
 // Runs of up to so many paths change places in a kick; routes of so few paths have none.
 constexpr int kLongestKicked = 10;
 constexpr int kFewestKicked = 4;
@@ -65,8 +68,7 @@ class Search {
         cost_(problem),
         walls_(problem.walls),
         queue_(tree_.path_count(), tree_.leaf_count()),
-        onward_{std::vector<double>(Index(tree_.leaf_count())),
-                std::vector<double>(Index(tree_.leaf_count()))},
+        onward_(Index(tree_.leaf_count())),
         backward_(onward_) {}
 
   Route Run(const Route& route, LinkEffort effort) {
@@ -76,7 +78,7 @@ class Search {
       if (budget_.Exhausted()) return route;
       Measure(i);
     }
-    Sum(0);
+    Sum(0, state_.last_position());
     for (int i = 1; i < state_.last_position(); ++i) queue_.Push(state_.leaf_at(i));
     Settle();
     if (effort == LinkEffort::kKick) KickOn();
@@ -92,7 +94,7 @@ class Search {
     }
   }
 
-  double Cost() const { return onward_.sums[Index(state_.last_position())]; }
+  double Cost() const { return onward_.Before(state_.last_position()); }
 
   // Kicks, until the last ones were not worth it.
   void KickOn() {
@@ -100,8 +102,9 @@ class Search {
     const int paths = state_.last_position() - 1;
     if (paths < kFewestKicked) return;
     Rng rng(1);
-    Direction onward = onward_;
-    Direction backward = backward_;
+    std::vector<double> onward = onward_.links;
+    std::vector<double> backward = backward_.links;
+    changed_ = {state_.last_position(), 0};
     double cost = Cost();
     double cost_before = cost;
     int64_t work_before = Work();
@@ -109,21 +112,30 @@ class Search {
       if (Kick(rng)) Settle();
       if (queue_.empty() && Cost() <= cost) {
         state_.Commit();
-        onward = onward_;
-        backward = backward_;
+        CopyChanged(onward_.links, onward);
+        CopyChanged(backward_.links, backward);
         cost = Cost();
       } else {
         queue_.Clear();
         state_.UndoTo(0);
-        onward_ = onward;
-        backward_ = backward;
+        CopyChanged(onward, onward_.links);
+        CopyChanged(backward, backward_.links);
+        if (changed_.first <= changed_.last) Sum(changed_.first, changed_.last);
       }
-      asked_ += 1 + static_cast<int64_t>(Index(paths) / kNumbersMoved);
+      ++asked_;
+      changed_ = {state_.last_position(), 0};
       if (Work() - work_before < kWindowEach * paths) continue;
       if (cost_before - cost < kLeastGain * cost_before) return;
       cost_before = cost;
       work_before = Work();
     }
+  }
+
+  // What has changed since the last kick.
+  void CopyChanged(const std::vector<double>& from, std::vector<double>& to) const {
+    if (changed_.first > changed_.last) return;
+    std::copy(from.begin() + changed_.first, from.begin() + changed_.last + 1,
+              to.begin() + changed_.first);
   }
 
   int64_t Work() const { return asked_ + (walls_ != nullptr ? 2 * walls_->work() : 0); }
@@ -197,14 +209,11 @@ class Search {
     backward_.links[Index(place)] = inner ? Link(At(place + 1, true), At(place, true)) : 0;
   }
 
-  // Those from `place` on have changed.
-  void Sum(int place) {
-    asked_ += static_cast<int64_t>((onward_.sums.size() - Index(place)) / kNumbersMoved);
-    for (Direction* way : {&onward_, &backward_}) {
-      for (size_t i = Index(place); i + 1 < way->sums.size(); ++i) {
-        way->sums[i + 1] = way->sums[i] + way->links[i];
-      }
-    }
+  // The links from the places [first, last] have changed.
+  void Sum(int first, int last) {
+    changed_ = {std::min(changed_.first, first), std::max(changed_.last, last)};
+    asked_ += static_cast<int64_t>(onward_.Sum(Index(first), Index(last)) / kNumbersMoved);
+    backward_.Sum(Index(first), Index(last));
   }
 
   // What runs have inside goes with them.
@@ -230,8 +239,8 @@ class Search {
   }
 
   double Inside(const Segment& run) const {
-    const std::vector<double>& sums = run.reversed ? backward_.sums : onward_.sums;
-    return sums[Index(run.last)] - sums[Index(run.first)];
+    const Direction& way = run.reversed ? backward_ : onward_;
+    return way.Before(run.last) - way.Before(run.first);
   }
 
   // What the route costs more if the places [first, last] come as `runs`, without the links to and
@@ -290,6 +299,7 @@ class Search {
   // Does `move` if that makes the route cheaper, perhaps with another entry of a path alone in its
   // run.
   bool Try(const SegmentMove& move) {
+    if (move.last - move.first > kMostMoved) return false;
     if (move.first < 1 || move.last >= state_.last_position()) return false;
     if (budget_.Exhausted() || !state_.Allows(move)) return false;
     const std::array<Segment, 2> order = move.NewOrder();
@@ -312,7 +322,7 @@ class Search {
       queue_.Push(state_.leaf_at(behind - 1));
       queue_.Push(state_.leaf_at(behind));
     }
-    Sum(move.first - 1);
+    Sum(move.first - 1, move.last);
   }
 
   bool TryEntry(int position) {
@@ -323,7 +333,7 @@ class Search {
     state_.SetEntry(state_.leaf_at(position), *run.entry);
     Measure(position - 1);
     Measure(position);
-    Sum(position - 1);
+    Sum(position - 1, position);
     for (int i = position - 1; i <= position + 1; ++i) queue_.Push(state_.leaf_at(i));
     return true;
   }
@@ -383,11 +393,38 @@ class Search {
     LinkCost::Reached begin;
   };
 
-  // [place] the link from there to the next one, or from the next one to it in the route backwards,
-  // and what all those before it cost together.
-  struct Direction {
-    std::vector<double> links;
-    std::vector<double> sums;
+  // The link from each place to the next one, or from the next one to it in the route backwards.
+  class Direction {
+   public:
+    explicit Direction(size_t places)
+        : links(places), within_(places), blocks_(places / kBlock + 2) {}
+
+    // What those from all places before `place` cost together.
+    double Before(int place) const {
+      return blocks_[Index(place) / kBlock] + within_[Index(place)];
+    }
+
+    // Those from the places [first, last] have changed. Returns how many numbers it looked at.
+    size_t Sum(size_t first, size_t last) {
+      const size_t first_block = first / kBlock;
+      for (size_t block = first_block; block * kBlock < links.size(); ++block) {
+        const size_t begin = block * kBlock;
+        const size_t end = std::min(begin + kBlock, links.size());
+        for (size_t i = begin; i + 1 < end && begin <= last; ++i) {
+          within_[i + 1] = within_[i] + links[i];
+        }
+        blocks_[block + 1] = blocks_[block] + within_[end - 1] + links[end - 1];
+      }
+      return last - first + blocks_.size() - first_block;
+    }
+
+    std::vector<double> links;  // [place]
+
+   private:
+    static constexpr size_t kBlock = 256;
+
+    std::vector<double> within_;  // [place] what those before it in its block cost
+    std::vector<double> blocks_;  // [block] what all blocks before it cost
   };
 
   Budget& budget_;
@@ -404,6 +441,7 @@ class Search {
   LeafQueue queue_;
   Direction onward_;
   Direction backward_;
+  Segment changed_ = {0, 0};  // places whose links have
 };
 
 }  // namespace
