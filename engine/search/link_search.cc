@@ -40,8 +40,8 @@ constexpr int kMostMoved = 25'000;
 constexpr int kLongestKicked = 10;
 constexpr int kFewestKicked = 4;
 
-// Kicks go on while so much work for each path gains this share of the cost. Work is counted in
-// questions about links, of 25 ns; so long is moving this many numbers.
+// Kicks go on while one for each path, or so much work for each, gains this share of the cost. Work
+// is counted in questions about links, of 25 ns; moving so many numbers takes as long.
 constexpr int64_t kWindowEach = 8'000;
 constexpr double kLeastGain = 0.005;
 constexpr size_t kNumbersMoved = 8;
@@ -108,7 +108,7 @@ class Search {
     double cost = Cost();
     double cost_before = cost;
     int64_t work_before = Work();
-    while (!budget_.Exhausted()) {
+    for (int kicks = 1; !budget_.Exhausted(); ++kicks) {
       if (Kick(rng)) Settle();
       if (queue_.empty() && Cost() <= cost) {
         state_.Commit();
@@ -124,10 +124,11 @@ class Search {
       }
       ++asked_;
       changed_ = {state_.last_position(), 0};
-      if (Work() - work_before < kWindowEach * paths) continue;
-      if (cost_before - cost < kLeastGain * cost_before) return;
+      if (kicks < paths && Work() - work_before < kWindowEach * paths) continue;
+      if (cost_before - cost <= kLeastGain * cost_before) return;
       cost_before = cost;
       work_before = Work();
+      kicks = 0;
     }
   }
 

@@ -95,6 +95,19 @@ TEST_F(LinkSearch, KicksFindWhatNoSmallChangeDoes) {
   EXPECT_LT(RouteCost(problem_, kicked), 0.98 * RouteCost(problem_, settled));
 }
 
+// No kick can gain anything where all is in one place, or the order is fixed.
+TEST_F(LinkSearch, EndsWhereNothingCanBeGained) {
+  Budget budget;
+  plan_.nodes[0].kind = PlanNode::Kind::kInOrder;
+  const Route given = GivenRoute(plan_);
+  ASSERT_OK(ValidateRoute(plan_, ImproveLinks(problem_, given, LinkEffort::kKick, budget)));
+
+  plan_.nodes[0].kind = PlanNode::Kind::kAnyOrder;
+  for (Path& path : plan_.paths) path = MakeContour({{0, 0}});
+  links_.assign(plan_.paths.size(), PathLinks());
+  EXPECT_EQ(ImproveLinks(problem_, given, LinkEffort::kKick, budget).size(), given.size());
+}
+
 // A kick that is not finished is taken back.
 TEST_F(LinkSearch, StopsWithNoWorseRouteWhileItKicks) {
   const Route given = GivenRoute(plan_);
