@@ -56,8 +56,9 @@ class LayerChooser::Impl {
     rests_.SetGiven(TimedRow(columns_, false));
     const auto fill = [this](size_t i) { gcode::FillTravels(file_, columns_[i], columns_[i + 1]); };
     ParallelFor(columns_.size() - 1, threads_, fill);
-    for (size_t layer = 1; layer < columns_.size(); ++layer) AddPastObstacles(layer);
-    ParallelFor(columns_.size() - 1, threads_, fill);
+    bool added = false;
+    for (size_t layer = 1; layer < columns_.size(); ++layer) added |= AddPastObstacles(layer);
+    if (added) ParallelFor(columns_.size() - 1, threads_, fill);
     AddRested();
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillTravels(i + 1); });
   }
@@ -251,11 +252,12 @@ class LayerChooser::Impl {
   }
 
   // Where something stands in the way to the begin of a choice, or from the end of one to this
-  // layer, and does not in the file, adds the same choice with the file's begin or end.
-  void AddPastObstacles(size_t layer) {
+  // layer, and does not in the file, adds the same choice with the file's begin or end. Whether it
+  // did.
+  bool AddPastObstacles(size_t layer) {
     LayerColumn& column = columns_[layer];
     LayerColumn& before = columns_[layer - 1];
-    if (column.writer->room() == nullptr) return;
+    if (column.writer->room() == nullptr) return false;
     std::vector<LayerOrder> begun;
     for (size_t c = 1; c < column.choices.size(); ++c) {
       if (column.totals.Travel(0, c).blocked == 0) continue;
@@ -268,7 +270,9 @@ class LayerChooser::Impl {
     }
     for (const LayerOrder& order : begun) filler_.Add(order, layer, column);
     for (const LayerOrder& order : ended) filler_.Add(order, layer - 1, before);
-    column.blocked |= !begun.empty() || !ended.empty();
+    const bool added = !begun.empty() || !ended.empty();
+    column.blocked |= added;
+    return added;
   }
 
   void FillTravels(size_t layer) {

@@ -1,6 +1,7 @@
 #include "client/gcode/choose/order_polish.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -272,6 +273,7 @@ OrderPolisher::OrderPolisher(uint32_t first_block, const std::vector<Outline>& o
 
 LayerOrder OrderPolisher::PolishWithin(const std::vector<uint32_t>& groups, const LayerOrder& begun,
                                        const OrderMerger& judge, Effort effort) const {
+  assert(groups.size() == outlines_.size());
   if (begun.size() < 3) return begun;
   return Search(*this, groups, judge, begun).Run(effort);
 }

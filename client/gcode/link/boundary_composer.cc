@@ -25,11 +25,9 @@ bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
 // path begins otherwise beside its layer's height than the one behind `link`, as scarf seams do,
 // and is arrived at in this link as there.
 std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
-  const auto rise = [this](uint32_t block) {
-    return file_.blocks[block].last.z - file_.blocks[block].first.z;
-  };
   const uint32_t to = to_.placement().block;
-  if (rise(to) == rise(*form_.boundary)) return nullptr;
+  const Decimal rise = donors_.RiseOf(to);
+  if (rise == donors_.RiseOf(*form_.boundary)) return nullptr;
   const bool marks = std::any_of(
       link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {
         return step.kind == StepKind::kLabel || step.kind == StepKind::kLayerMark ||
@@ -37,7 +35,7 @@ std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
       });
   if (marks) return nullptr;
   for (const auto& like : {std::optional(to), donors_.Find(to, link.retracts())}) {
-    if (!like || rise(*like) != rise(to)) continue;
+    if (!like || donors_.RiseOf(*like) != rise) continue;
     std::shared_ptr<const Link> own = parts_.LinkTo(*like);
     const bool alike = own->arrival >= 0 && own->SameRetraction(link) &&
                        own->arrives_retracted == link.arrives_retracted;

@@ -37,6 +37,10 @@ class LinkDonors {
   // Whether link `block` itself may be a template.
   bool MayFollow(uint32_t block) const { return may_follow_[block]; }
 
+  // How much path `block` rises from its begin to its end, as scarf seams do, in the unit of the
+  // file.
+  Decimal RiseOf(uint32_t block) const;
+
   // Most links like link `block` in its layer rise above what is printed, but it does
   // not.
   bool LacksLift(uint32_t block) const;
@@ -57,7 +61,6 @@ class LinkDonors {
 
   bool Travels(uint32_t block) const;
   Kind KindOf(uint32_t block) const;
-  Decimal RiseOf(uint32_t block) const;
   std::optional<uint32_t> FindAmong(const std::map<Kind, ByRise>& links, const Kind& kind,
                                     uint32_t block) const;
   void CountLifts(uint32_t link);
