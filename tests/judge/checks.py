@@ -21,15 +21,33 @@ REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no
 SHARE_SLACK = 2.0  # points of a per cent
 ACCEL = 3  # in print_trace.STATE
 USUAL_ACCEL = 1000.0
+FARTHEST_MM = 10000.0  # from the origin: no head goes there, but a file may say so
+
+
+def shares_inside(move):
+    """The shares of a straight move between which it is no farther away than FARTHEST_MM along x and y, if any."""
+    begin, end = 0.0, 1.0
+    for a, b in ((move.x0, move.x1), (move.y0, move.y1)):
+        if a == b:
+            if abs(a) > FARTHEST_MM:
+                return None
+            continue
+        low, high = sorted(((-FARTHEST_MM - a) / (b - a), (FARTHEST_MM - a) / (b - a)))
+        begin, end = max(begin, low), min(end, high)
+    return (begin, end) if begin <= end else None
 
 
 def cells_of(move, size):
     """The cells of `size` mm that a straight move passes, in order, without repeats next to each other."""
-    count = max(1, math.ceil(move.length / (size / 2)))
+    inside = shares_inside(move)
+    if inside is None:
+        return
+    count = max(1, math.ceil(move.length * (inside[1] - inside[0]) / (size / 2)))
     last = None
     for i in range(count + 1):
-        cell = (math.floor((move.x0 + (move.x1 - move.x0) * i / count) / size),
-                math.floor((move.y0 + (move.y1 - move.y0) * i / count) / size))
+        share = inside[0] + (inside[1] - inside[0]) * i / count
+        cell = (math.floor((move.x0 + (move.x1 - move.x0) * share) / size),
+                math.floor((move.y0 + (move.y1 - move.y0) * share) / size))
         if cell != last:
             yield cell
             last = cell

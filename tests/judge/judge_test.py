@@ -147,6 +147,15 @@ class Checks(unittest.TestCase):
 
         self.assertIn("obstacles", faults(around, through))
 
+    def test_of_a_move_to_far_away_what_lies_near_counts(self):
+        tower = [line for n in range(1, 20) for line in layer(n * 0.2, block(20, n * 0.2))]
+        moves = print_trace.trace("\n".join(HEAD + tower + ["G1 X25 Y15", "G1 X1000000 Y15", "G1 Y1000000"])).moves
+        to, on = (list(checks.cells_of(move, 0.5)) for move in moves[-2:])
+
+        self.assertIn((50, 30), to)
+        self.assertLess(len(to), 50_000)
+        self.assertEqual(on, [])
+
     def test_a_share_far_from_its_time_is_found(self):
         def told(at):
             return self.towers[:at] + ["M73 P50"] + self.towers[at:]
