@@ -376,6 +376,8 @@ bool Interpreter::PullsNext() const {
     if (command.kind != LineKind::kCommand || command.Is('G', 4) || command.Is('M', 400)) continue;
     const bool bare = TrimBlanks(command.rest).empty();
     const bool moves = command.Is('G', 0) || command.Is('G', 1);
+    // Slicers state the feed rate of a wipe on a line of its own.
+    if (moves && command.words == Command::Bit('F')) continue;
     if (!moves || !command.Has('E')) {
       return bare && (command.Is('G', 10) || command.Is('G', 11));
     }

@@ -269,6 +269,8 @@ bool VerifyMachine::PullsBehind() const {
     if (waits) continue;
     if (letter != 'G' || !words.readable) return false;
     if (number == 10 || number == 11) return words.set == 0;
+    const bool feed = words.set == 1u << ('F' - 'A');
+    if (feed && (number == 0 || number == 1)) continue;
     if (number > 1 || number < 0 || !words.Has('E')) return false;
     const Nano pushed = words.filament - (relative_ || relative_e_ ? 0 : e_);
     return pushed < 0 || words.OnlyFrom("EF");

@@ -219,6 +219,9 @@ TEST(Interpreter, WaitsBelongToTheRetractionsBesideThem) {
     EXPECT_EQ(first(std::string(wait) + "G1 E-1 F2100"), StepKind::kDwell) << wait;
     EXPECT_EQ(first(std::string(wait) + "G10"), StepKind::kDwell) << wait;
     EXPECT_EQ(first(std::string(wait) + "G1 X5 E-1"), StepKind::kDwell) << wait;
+    EXPECT_EQ(first(std::string(wait) + ";WIPE_START\nG1 F7200\nG1 X5 E-1"), StepKind::kDwell)
+        << wait;
+    EXPECT_EQ(first(std::string(wait) + "G1 F7200\nG1 X5"), StepKind::kUnknown) << wait;
     EXPECT_EQ(first(std::string(wait) + "G1 X5"), StepKind::kUnknown) << wait;
     EXPECT_EQ(first(std::string(wait) + "G1 X5 E1"), StepKind::kUnknown) << wait;
     EXPECT_EQ(first(std::string(wait) + "PAUSE\nG1 E-1"), StepKind::kUnknown) << wait;

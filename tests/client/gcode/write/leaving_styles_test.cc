@@ -38,6 +38,8 @@ constexpr Style kStyles[] = {
     {"FirmwareRetracts", "G10\n;WIPE_START\nG1 F7200\nG1 BACK\n;WIPE_END\n", "G1 TO F9000\nG11\n"},
     {"Waits", "G1 E-.8 F2100\nG4 P40\n", "G1 TO F9000\nG1 E.8 F2100\nG4 P20\n"},
     {"WaitsAndWipes", "G1 E-.8 F2100\nG4 P40\n;WIPE_START\nG1 F7200\nG1 BACK\n;WIPE_END\n", kPlain},
+    {"WaitsBeforeAWipe", "M400\n;WIPE_START\nG1 F7200\nG1 BACK E-.6\n;WIPE_END\nG1 E-.2 F2100\n",
+     kPlain},
     {"LiftsRelatively", "G1 E-.8 F2100\nG91\nG1 Z.4 F720\nG90\n",
      "G1 TO F9000\nG91\nG1 Z-.4 F720\nG90\nG1 E.8 F2100\n"},
     {"LiftsRelativelyAndSaysHowEIsCounted", "G1 E-.8 F2100\nG91\nG1 Z.4 F720\nG90\nM83\n",
