@@ -141,6 +141,7 @@ TEST(Interpreter, ModesMatterOnlyIfTheyChangeSomething) {
   EXPECT_EQ(LastKind("G20"), StepKind::kModeChange);
   EXPECT_EQ(LastKind("M83\nM83"), StepKind::kSays);
   EXPECT_EQ(LastKind("T1"), StepKind::kModeChange);
+  EXPECT_EQ(LastKind("T1\nT1"), StepKind::kModeChange) << "a macro, or the head parks and primes";
   EXPECT_EQ(LastKind("G91\nG1 X5 E1"), StepKind::kUnknown);
   EXPECT_EQ(LastKind("G1 X5 R2"), StepKind::kUnknown) << "from a stored point, to some machines";
 }
