@@ -17,13 +17,14 @@ namespace {
 
 // Layers for each that is looked at: what that takes is little beside all that a file takes.
 constexpr size_t kOneIn = 16;
+constexpr size_t kLeast = 3;
 
 constexpr double kLeastPushedMm = 1e-6;
 
 // The layers before the first and behind the last one hide nothing.
 std::vector<size_t> TypicalLayers(const std::vector<LayerColumn>& columns) {
   const size_t inner = columns.size() - 2;
-  const size_t runs = std::max<size_t>(columns.size() / kOneIn, 1);
+  const size_t runs = std::min(inner, std::max(columns.size() / kOneIn, kLeast));
   std::vector<size_t> typical;
   for (size_t run = 0; run < runs; ++run) {
     std::vector<std::pair<int64_t, size_t>> layers;  // retractions, layer

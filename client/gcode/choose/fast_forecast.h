@@ -14,9 +14,9 @@
 namespace traverse::gcode {
 
 // The seconds of the travel of `file` that Policy::kFast would save, with what else `allow` allows.
-// One path in sixteen is looked at, or one layer at the least: in layers whose retractions are as
-// many as those of the layers around them, what was chosen is improved by the rules of that policy.
-// 0 if there are fewer than three layers. `columns` have the layers, `travel` their travel;
+// One path in sixteen is looked at, or three layers at the least: in layers whose retractions are
+// as many as those of the layers around them, what was chosen is improved by the rules of that
+// policy. 0 if there are fewer than three layers. `columns` have the layers, `travel` their travel;
 // `donors` and `room` belong to `file`.
 double SecondsSavedByFast(const GcodeFile& file, const std::vector<LayerColumn>& columns,
                           const std::vector<TravelModel>& travel, const LinkDonors& donors,

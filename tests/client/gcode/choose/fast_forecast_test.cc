@@ -92,6 +92,24 @@ TEST(FastForecast, KnowsThatIslandsNeedNoRestThen) {
   EXPECT_NEAR(safe.fast_seconds / saved, 1, 0.3);
 }
 
+TEST(FastForecast, LooksAtThreeLayersOfAFewThatDiffer) {
+  Stack stack;
+  for (int layer = 1; layer <= 6; ++layer) {
+    stack.Layer(0.2 * layer);
+    for (const double x : {0.0, 30.0, 60.0}) {
+      layer % 3 == 0 ? stack.Box(x, 0, 20) : stack.Wall(x, 0, 20).Wall(x + 5, 5, 10);
+    }
+  }
+  const auto file = testing::Read(stack.Text() + "; slow_down_layer_time = 0\n");
+
+  const GcodeRewrite safe = Rewritten(*file, Policy::kSafe);
+  const GcodeRewrite fast = Rewritten(*file, Policy::kFast);
+
+  const double saved = fast.before.seconds - fast.after.seconds;
+  ASSERT_GT(saved, 0.01 * fast.before.seconds);
+  EXPECT_NEAR(safe.fast_seconds / saved, 1, 0.3);
+}
+
 TEST(FastForecast, PromisesNothingWhereNothingIsHidden) {
   for (const int layers : {1, 2, 20}) {
     const GcodeRewrite safe = Rewritten(*Print(layers, /*boxes=*/layers < 3), Policy::kSafe);
