@@ -13,7 +13,8 @@ inline bool Retracts(const TraceMove& move) {
   return move.kind == MoveKind::kRetraction || (move.kind == MoveKind::kWipe && move.filament < 0);
 }
 
-// That of `link`; nothing if there is none. The head may rise to the next layer before it retracts.
+// That of `link`; nothing if there is none. The head may rise to the next layer before it retracts,
+// and wait.
 inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   constexpr double kLongestMm = 1.0;
   const TraceLink& traced = chunk.links[link];
@@ -23,7 +24,10 @@ inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
                       first.z_from_mm == first.z_to_mm && first.length_mm() >= kLeastDepartureMm &&
                       first.length_mm() <= kLongestMm;
   uint32_t next = traced.first_move + 1;
-  while (next + 1 < traced.end_move && chunk.moves[next].kind == MoveKind::kUp) ++next;
+  const auto goes_on = [&chunk](uint32_t m) {
+    return chunk.moves[m].kind == MoveKind::kUp || chunk.moves[m].kind == MoveKind::kDwell;
+  };
+  while (next + 1 < traced.end_move && goes_on(next)) ++next;
   return leaves && Retracts(chunk.moves[next]) ? &first : nullptr;
 }
 

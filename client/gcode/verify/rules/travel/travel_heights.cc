@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
@@ -71,6 +72,15 @@ class LinkHeights {
   Descent descent_;
 };
 
+// How many moves at the beginning of `link`, which ends at another height, go on along the path.
+uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
+  const TraceMove& first = chunk.moves[chunk.links[link].first_move];
+  if (link == 0 || RiseOf(first.z_from_mm, chunk.paths[link].z_mm) == TravelRise::kLevel) return 0;
+  std::vector<Piece> pieces;
+  AppendPieces(chunk, link - 1, pieces);
+  return LayerPair::TailMoves(chunk, link - 1, pieces);
+}
+
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
@@ -80,9 +90,10 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   }
   LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
                       layer.index(), seen);
-  // A new departure is as high as the path before; those of the original are examples.
+  // A new departure, or tail, is as high as the path before; those of the original are examples.
   const TraceMove* departure = only_new ? DepartureOf(chunk, link) : nullptr;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+  const uint32_t tail = only_new ? TailOf(chunk, link) : 0;
+  for (uint32_t m = traced.first_move + tail; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (only_new && layer.IsKnown(move)) continue;
     if (&move != departure) heights.NoteDepth(move);

@@ -117,6 +117,19 @@ TEST(VerifyLifts, TheHeadLeavesAWallBeforeItRisesToALayer) {
   EXPECT_EQ(Broken(kHead + wall + line + to,
                    kHead + line + With(wall, inwards, "G1 X11.3 Y11.3 F9000\n") + to),
             "open_travel lifts path_ends");
+  // Or it waits before that.
+  const std::string waits = With(to, "G1 E-1 F2100", "M400\nG1 E-1 F2100");
+  EXPECT_EQ(Broken(kHead + wall + line + waits, kHead + line + wall + waits), "");
+}
+
+// What goes on along the wall without filament is no travel to the layer.
+TEST(VerifyLifts, TheTailOfAWallIsAsHighAsTheWall) {
+  const std::string wall = kSquare + "G1 X12 Y10\n";
+  const std::string line = Line("Internal infill", "X12 Y15", "X18 Y15");
+  const std::string to = kNextLayer + Line("Internal infill", "X12 Y12", "X18 Y12");
+  EXPECT_EQ(Broken(kHead + wall + line + to, kHead + line + wall + to), "");
+  const std::string off = With(wall, "G1 X12 Y10\n", "G1 X12 Y12\n");
+  EXPECT_THAT(Broken(kHead + wall + line + to, kHead + line + off + to), HasSubstr("lifts"));
 }
 
 // From the top of one object to the foot of the next one.
