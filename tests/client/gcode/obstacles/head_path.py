@@ -5,7 +5,7 @@ import math
 
 BUCKET = 4.0
 NEAR = 0.2        # of a line's middle: half of its width, or less
-WAS_THERE = 0.3   # of the original's head
+WAS_THERE = 0.5   # of the original's head: what the product promises
 HIGHER = 0.08
 STEP = 0.1
 
