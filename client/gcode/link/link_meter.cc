@@ -40,7 +40,7 @@ class LinkMeter {
     step.from = at_.machine.at;
     step.filament = line.step.filament;
     step.arc = line.step.arc;
-    if (step.arc) LexLine(line.raw, step.command);
+    if (step.arc || step.kind == StepKind::kDwell) LexLine(line.raw, step.command);
     at_.machine.at = line.step.to;
     at_.machine.feed = line.step.feed;
     meter_.Follow(step, at_.machine);

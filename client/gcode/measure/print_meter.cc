@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/gcode/measure/nominal_time.h"
 #include "client/gcode/model/arc.h"
 
 namespace traverse::gcode {
@@ -91,6 +92,10 @@ void PrintMeter::Follow(const Step& step, const MachineState& state) {
         return;
       }
       return Stand(step, state);
+    case StepKind::kDwell:
+    case StepKind::kUnknown:
+      if (step.command.Is('G', 4)) planner_.Stop(NominalSeconds(step, state));
+      return;
     default:
       return;
   }

@@ -21,8 +21,9 @@ using testing::Sketch;
 constexpr int kHeights[] = {0, 70, 10, 60, 20, 50, 30, 40};
 
 // Lines of 10 mm one above the other. The head rises on the way to them by `slope`, and the line at
-// `wiped` is wiped; behind that at `slow` the prime is slow.
-std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1, int slow = -1) {
+// `wiped` is wiped; behind that at `slow` the prime is slow, and behind that at `waits` the head
+// waits for a second once it has retracted.
+std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1, int slow = -1, int waits = -1) {
   Sketch sketch;
   double x = 0;
   double y = 0;
@@ -33,6 +34,7 @@ std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1, int slow = -1) {
     } else {
       sketch.Add("G1 E-.8 F2100");
     }
+    if (waits >= 0 && y == waits) sketch.Add("G4 P1000");
     const std::string rise = slope > 0 ? absl::StrCat(" Z", .2 + slope * mm) : "";
     sketch.Add(absl::StrCat("G1 X0 Y", height, rise, " F9000"));
     if (slope > 0) sketch.Add("G1 Z.2 F300");
@@ -106,6 +108,15 @@ TEST(Retractions, CostWhatThePrimeOfThePathBehindDoes) {
   const Saved alike = SavedUpwards(*Lines(0));
 
   EXPECT_NEAR(saved.written, alike.written, .005);
+  EXPECT_NEAR(saved.estimated, saved.written, .001);
+}
+
+// Nothing in the layer is behind the highest line if it comes last.
+TEST(Retractions, CostWhatTheHeadWaitsForBehindThem) {
+  const Saved saved = SavedUpwards(*Lines(0, -1, -1, 70));
+  const Saved hasty = SavedUpwards(*Lines(0));
+
+  EXPECT_NEAR(saved.written, hasty.written + 1, .05);
   EXPECT_NEAR(saved.estimated, saved.written, .001);
 }
 
