@@ -99,6 +99,11 @@ void GcodeOut::Edited(const LinkLine& line) {
     at.machine.e = step.filament;
     return Raw(line.raw);
   }
+  // Right behind what it waits for, even if that is of the start script.
+  if (step.kind == StepKind::kDwell) {
+    text_.append(line.raw);
+    return;
+  }
   Flush();
   at.machine.e += step.filament;
   WordChange changes[5];

@@ -40,5 +40,28 @@ TEST(GcodeOut, WritesAFeedRateOnce) {
   EXPECT_EQ(written().find('F'), std::string::npos);
 }
 
+// Nothing comes between a retraction and the wait behind it, wherever the one ends what is copied.
+TEST(GcodeOut, WaitsBeforeItSets) {
+  const auto file = Sketch()
+                        .Add("M204 S500")
+                        .Square(0, 0, 10)
+                        .Add("M204 S800")
+                        .GoRetracted(30, 5)
+                        .Infill(31, 5)
+                        .Read();
+  std::string text;
+  GcodeOut out(*file, StartBehind(*file, file->blocks[0]), text);
+  LinkLine wait;
+  wait.form = LineForm::kEdited;
+  wait.raw = "M400\n";
+  wait.step.kind = StepKind::kDwell;
+
+  out.Set(file->states[file->blocks[1].state_in], kDynamicsSlots);
+  out.Edited(wait);
+  EXPECT_EQ(text, "M400\n");
+  out.Flush();
+  EXPECT_EQ(text, "M400\nM204 S800\n");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
