@@ -328,7 +328,10 @@ void Interpreter::Move(Step& step) {
     step.kind = step.filament != 0 ? StepKind::kFilament : StepKind::kFeed;
   }
   if (state_.in_wipe && xy && step.filament == 0) step.kind = StepKind::kWipe;
-  if (step.kind == StepKind::kExtrude) state_.in_wipe = false;
+  if (step.kind == StepKind::kExtrude) {
+    state_.in_wipe = false;
+    deposited_ = to;
+  }
   FollowFilament(step.filament, !xy);
   state_.at = to;
   step.relative = state_.relative_xyz;
@@ -364,8 +367,35 @@ Offset Interpreter::LiftsUntil(Offset next) const {
   return 0;
 }
 
+// Elsewhere the head was led aside by a script, which waits there.
 StepKind Interpreter::KindOfWait() const {
-  return behind_pull_ || PullsNext() ? StepKind::kDwell : StepKind::kUnknown;
+  // Beyond moves inwards, coasting and wipes.
+  constexpr double kAsideMm = 10;
+  const double aside_mm = Distance(state_.InMm(state_.at), state_.InMm(deposited_));
+  const bool of_path = aside_mm <= kAsideMm || PrintsNext();
+  return of_path && (behind_pull_ || PullsNext()) ? StepKind::kDwell : StepKind::kUnknown;
+}
+
+bool Interpreter::PrintsNext() const {
+  constexpr int kMostLines = 16;
+  constexpr uint32_t kOfXy = Command::Bit('X') | Command::Bit('Y');
+  Command command;
+  Offset next = next_;
+  Decimal e = state_.e;
+  for (int i = 0; i < kMostLines; ++i) {
+    // The text of a link ends where its path begins.
+    if (!LexAhead(next, command)) return true;
+    const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
+                       command.number >= 0 && command.number <= 3;
+    const bool sets = command.Is('G', 92);
+    if (!moves && !sets) continue;
+    const bool filament = command.Has('E');
+    if (moves && (command.words & kOfXy) != 0) {
+      return filament && command.Value('E') > (state_.RelativeE() ? 0 : e);
+    }
+    if (filament) e = command.Value('E');
+  }
+  return false;
 }
 
 bool Interpreter::PullsNext() const {

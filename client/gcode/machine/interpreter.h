@@ -77,7 +77,7 @@ enum class StepKind : uint8_t {
   kFilament,     // only E
   kLift,         // only Z; also a spiral, G2 or G3 with Z that ends where it began
   kRelative,     // G91 and G90 around lifts, and M82 or M83 behind that, which changes nothing
-  kDwell,        // G4 right behind a move of filament alone: goes with it
+  kDwell,        // G4 or M400 beside a move of filament alone, at an end of a path: goes with it
   kFeed,         // only F, or a motion of no length
   kSetE,         // G92 of only E
   kFirmwareRetract,
@@ -108,7 +108,7 @@ class Interpreter {
  public:
   // Executes `text` from `begin`, with the machine in `state`. `text` must outlive the interpreter.
   explicit Interpreter(std::string_view text, Offset begin = 0, const MachineState& state = {})
-      : text_(text), next_(begin), state_(state) {}
+      : text_(text), next_(begin), deposited_(state.at), state_(state) {}
 
   // Executes the next line; false at the end of the text.
   bool Next(Step& step);
@@ -137,6 +137,8 @@ class Interpreter {
   Offset ConditionUntil(Offset next) const;
   // The next command, but for waiting, moves filament alone or pulls it back.
   bool PullsNext() const;
+  // The next motion in XY deposits.
+  bool PrintsNext() const;
   StepKind KindOfWait() const;
   void SwitchUnits();
 
@@ -145,6 +147,7 @@ class Interpreter {
   Offset lifts_until_ = 0;      // the end of the relative lift that was found last
   Offset condition_until_ = 0;  // the end of the condition that was found last
   bool behind_pull_ = false;    // the command before this one, but for waiting, was such a move
+  Position deposited_;          // where it deposited last
   MachineState state_;
 
   // What the nozzle and the bed were last told; nothing behind lines that may have told them.

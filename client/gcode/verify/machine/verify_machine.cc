@@ -245,13 +245,43 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
   }
 }
 
-// Beside a move that pulls filament back, or pushes it alone, it goes with that.
+// Beside a move that pulls filament back, or pushes it alone, it goes with that; but not where a
+// script waits for something, far from the paths on both sides.
 void VerifyMachine::Wait(Micro milliseconds, VerifyLine& line) {
-  if (!waits_ && !PullsBehind()) return Fence(line, LineRole::kFixed);
+  const bool of_pull = waits_ || PullsBehind();
+  if (!of_pull || (StandsAside() && !DepositsBehind())) return Fence(line, LineRole::kFixed);
   NoteMotion(4, 0, at_, 0);
   motion_.feed = milliseconds;
   line.moves = true;
   pulls_ = waits_;
+}
+
+bool VerifyMachine::StandsAside() const {
+  constexpr double kMostMicro = 10'000'000;  // slicers lead inwards, coast and wipe less far
+  const double scale = inches_ ? 25.4 : 1;
+  return std::hypot(static_cast<double>(at_[0] - left_[0]),
+                    static_cast<double>(at_[1] - left_[1])) *
+             scale >
+         kMostMicro;
+}
+
+bool VerifyMachine::DepositsBehind() const {
+  constexpr size_t kMostLines = 16;
+  std::string_view rest = rest_;
+  Nano e = e_;
+  for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
+    const std::string_view line = TrimmedLine(rest);
+    if (line.empty() || UpperCase(line[0]) != 'G') continue;
+    int number = -1;
+    std::from_chars(line.data() + 1, line.data() + line.size(), number);
+    if (number != 92 && (number < 0 || number > 3)) continue;
+    const CommandWords words(WordsOf(line));
+    if (!words.readable) return false;
+    const bool sideways = number != 92 && (words.Has('X') || words.Has('Y'));
+    if (sideways) return words.Has('E') && words.filament > (relative_ || relative_e_ ? 0 : e);
+    if (words.Has('E')) e = words.filament;
+  }
+  return false;
 }
 
 bool VerifyMachine::PullsBehind() const {
@@ -356,6 +386,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
   }
   if ((moves || number >= 2) && filament > 0) {
     Deposit(number, words, from, filament, line);
+    left_ = at_;
   } else {
     line.travels = moves;
     pulls_ = filament != 0 && !moves && at_[2] == from[2];

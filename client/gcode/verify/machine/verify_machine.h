@@ -125,7 +125,9 @@ class VerifyMachine {
   // that is stated again; 0: other lines follow.
   size_t LinesOfLift() const;
   bool ConditionOnlyTells() const;
-  bool PullsBehind() const;  // so does the next command, without waiting
+  bool PullsBehind() const;     // so does the next command, without waiting
+  bool DepositsBehind() const;  // the next line that leads sideways
+  bool StandsAside() const;     // away from what was deposited last
   void Wait(Micro milliseconds, VerifyLine& line);
   bool InLift() const { return number_ <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
@@ -144,6 +146,7 @@ class VerifyMachine {
   uint32_t line_ends_ = 0;
   std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};
+  std::array<Micro, 3> left_{};  // where it deposited last
   Nano e_ = 0;
   Micro feed_ = 0;
   Micro pulled_ = 0;

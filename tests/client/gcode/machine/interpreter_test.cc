@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -230,6 +231,23 @@ TEST(Interpreter, WaitsBelongToTheRetractionsBesideThem) {
   EXPECT_EQ(LastKind("G1 E-1\nG1 X5\nG4 P50"), StepKind::kUnknown);
   EXPECT_EQ(LastKind("G1 E-1\nG1 X5\nM400"), StepKind::kUnknown);
   EXPECT_EQ(LastKind("G1 E-1\nM400 U1"), StepKind::kUnknown);
+}
+
+TEST(Interpreter, WaitsFarFromBothPathsBelongToAScript) {
+  const auto wait = [](const std::string& before, const std::string& behind) {
+    const std::vector<StepKind> kinds = Kinds("M83\nG1 X5 E1\n" + before + "G4 P50\n" + behind);
+    return kinds[2 + static_cast<size_t>(std::count(before.begin(), before.end(), '\n'))];
+  };
+  const std::string park = "G1 X99 F9000\n";
+
+  EXPECT_EQ(wait("G1 E-1\n" + park, "G1 E1\nG1 X5\nG1 X9 E1"), StepKind::kUnknown);
+  EXPECT_EQ(wait(park, "G1 X5 E-1"), StepKind::kUnknown);
+  EXPECT_EQ(wait(park + "G1 E-1\n", "G1 E1\nG1 X5\nG1 X9 E1"), StepKind::kUnknown);
+  // Inwards from the one path, and where the other one begins.
+  EXPECT_EQ(wait("G1 X4\nG1 E-1\n", park), StepKind::kDwell);
+  EXPECT_EQ(wait(park, "G1 E1\nM204 S500\n;TYPE:Perimeter\nG1 X90 E1"), StepKind::kDwell);
+  EXPECT_EQ(wait(park + "G1 E1\n", "G1 X90 E1"), StepKind::kDwell);
+  EXPECT_EQ(wait(park + "G1 E1\n", ""), StepKind::kDwell) << "up to a path";
 }
 
 }  // namespace

@@ -43,6 +43,25 @@ LineRole LastRole(const std::string& text) {
   return line.role;
 }
 
+TEST(VerifyMachine, WhatWaitsFarFromBothPathsIsAFence) {
+  const auto wait = [](const std::string& before, const std::string& behind) {
+    const std::string text = "M83\nG1 X5 E1 F900\n" + before + "G4 P50\n" + behind;
+    VerifyMachine machine(text);
+    for (VerifyLine line; machine.Next(line);) {
+      if (line.text == "G4 P50") return line.role;
+    }
+    return LineRole::kProgress;
+  };
+  const std::string park = "G1 X99 F9000\n";
+
+  EXPECT_EQ(wait("G1 E-1\n" + park, "G1 E1\nG1 X5\nG1 X9 E1\n"), LineRole::kFixed);
+  EXPECT_EQ(wait(park, "G1 X5 E-1\n"), LineRole::kFixed);
+  EXPECT_EQ(wait(park + "G1 E-1\n", "G1 E1\nG1 X5\nG1 X9 E1\n"), LineRole::kFixed);
+  EXPECT_NE(wait("G1 X4\nG1 E-1\n", park), LineRole::kFixed);
+  EXPECT_NE(wait(park, "G1 E1\nM204 S500\n;TYPE:Perimeter\nG1 X90 E1\n"), LineRole::kFixed);
+  EXPECT_NE(wait(park + "G1 E1\n", "G1 X90 E1\n"), LineRole::kFixed);
+}
+
 // How E counts is guessed where nothing says so, and the guess depends on the order of the lines.
 TEST(VerifyMachine, SmallLettersSayHowFilamentCountsToo) {
   VerifyMachine machine(
