@@ -133,9 +133,11 @@ def filament(before, after, options):
 
     def starved(side):
         """What is lacking where lines deposit with filament pulled back: no more than each of them pushes."""
-        pushed, lacking = collections.Counter(), {}
+        pushed, lacking, lacks = collections.Counter(), {}, False
         for move in side.deposits():
-            if move.retracted > 0.02:
+            # A lack counts to its end, however many lines make up for it.
+            lacks = move.retracted > (1e-4 if lacks else 0.02)
+            if lacks:
                 pushed[move.line] += move.e
                 lacking[move.line] = move.retracted
         return sum(min(mm, lacking[line]) for line, mm in pushed.items())

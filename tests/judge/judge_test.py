@@ -82,6 +82,15 @@ class Checks(unittest.TestCase):
 
         self.assertNotIn("filament", faults(before, after))
 
+    def test_a_lack_is_the_same_in_many_short_lines_and_in_a_long_one(self):
+        lacks = ["G1 E-0.8 F2100", "G1 E0.7"]
+        before, after = HEAD, HEAD
+        for z in (0.2, 0.4, 0.6):
+            before = before + layer(z, lacks, block(10, z, e=0.09), block(40, z))
+            after = after + layer(z, lacks, block(40, z), block(10, z, e=0.09))
+
+        self.assertNotIn("filament", faults(before, after))
+
     def test_a_layer_goes_on_behind_a_scarf_seam(self):
         seam = ["G1 X60 Y10 F9000", "G1 Z0.25 F9000", "G1 F1800", "G1 X60 Y15 Z0.3 E0.1", "G1 X60 Y20 Z0.4 E0.1"]
         layers = checks.layers_of(print_trace.trace("\n".join(
