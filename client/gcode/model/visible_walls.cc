@@ -124,7 +124,8 @@ bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const W
                              double half_mm) const {
   constexpr double kStepMm = 0.25;
   constexpr double kMostSteps = 10'000;  // farther than any printer moves
-  const double away_mm = half_mm + 0.1;
+  // Less than bends keep off the middle of lines up to 0.7 mm wide.
+  const double away_mm = half_mm + 0.05;
   const Segment piece = SegmentOf(to.a, to.b);
   for (size_t i = 1; i <= leg; ++i) {
     const Point from = line[i - 1];

@@ -79,7 +79,18 @@ TEST(VisibleWalls, AreTouchedByTravelAroundACornerOfTheirOwn) {
   const VisibleWalls walls({bend});
 
   EXPECT_TRUE(walls.Touched(std::vector<Point>{{10, 10.2}, {10.4, 10.16}, {2, 5}}));
-  EXPECT_FALSE(walls.Touched(std::vector<Point>{{10, 10.2}, {10.4, 10}, {4, 5}}));
+  EXPECT_FALSE(walls.Touched(std::vector<Point>{{10, 10.2}, {10.35, 10}, {4, 5}}))
+      << "never left it";
+}
+
+// As detours are bent, about 0.4 mm off its middle.
+TEST(VisibleWalls, AreTouchedByTravelThatLeavesWideOnesAndPassesTheirTips) {
+  Outline tip = Wall({{0, 0}, {5, 0}, {10, 1}, {15, 0}, {20, 0}, {20, -9}, {0, -9}, {0, 0}});
+  tip.width_mm = 0.605;
+  const VisibleWalls walls({tip});
+
+  EXPECT_TRUE(walls.Touched(std::vector<Point>{{2, 0}, {5, 0.39}, {16, 1.82}}));
+  EXPECT_FALSE(walls.Touched(std::vector<Point>{{2, 0}, {5, 0.39}, {16, 2.8}}));
 }
 
 // The shortest travel moves pass corners by less than coordinates tell.
