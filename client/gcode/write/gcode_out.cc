@@ -24,13 +24,13 @@ std::string LineEndOf(std::string_view text) {
 }
 
 GcodeOut::GcodeOut(const GcodeFile& file, const PartStart& start, std::string& text)
-    : at(start), file_(file), text_(text), wanted_{} {
+    : at(start), file_(file), text_(text), wanted_{}, pulled_(start.machine.Retracted()) {
   line_end_ = LineEndOf(file.text);
 }
 
 void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
                     bool without_progress) {
-  Flush();
+  Begin(behind.machine.Retracted());
   const Decimal e = at.machine.e;
   at = behind;
   const Decimal shift = before.machine.RelativeE() ? 0 : e - before.machine.e;
@@ -78,7 +78,7 @@ void GcodeOut::Set(const PrintState& state, SlotMask mask) {
 }
 
 void GcodeOut::SetBy(std::string_view line, SlotMask slots) {
-  Flush();
+  Begin(false);
   text_.append(line);
   ApplySetter(at.state, file_.setters.Find(line.substr(0, line.find_last_not_of("\r\n") + 1)),
               slots);
@@ -90,7 +90,13 @@ void GcodeOut::Flush() {
   for (const uint32_t setter : SettersBetween(at.state, wanted_, slots, file_.setters)) {
     text_.append(file_.setters.Line(setter));
     EndLine();
+    pulled_ = false;
   }
+}
+
+void GcodeOut::Begin(bool pulls) {
+  Flush();
+  pulled_ = pulls;
 }
 
 void GcodeOut::Edited(const LinkLine& line) {
@@ -99,12 +105,14 @@ void GcodeOut::Edited(const LinkLine& line) {
     at.machine.e = step.filament;
     return Raw(line.raw);
   }
-  // Right behind what it waits for, even if that is of the start script.
+  // Right behind what it waits for, even if that is of the start script; else it is right before.
   if (step.kind == StepKind::kDwell) {
+    if (!pulled_) Flush();
     text_.append(line.raw);
     return;
   }
-  Flush();
+  Begin(step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
+        step.kind == StepKind::kFirmwareUnretract);
   at.machine.e += step.filament;
   WordChange changes[5];
   size_t count = 0;
@@ -136,7 +144,7 @@ void GcodeOut::Edited(const LinkLine& line) {
 }
 
 void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
-  Flush();
+  Begin(false);
   Command command;
   LexLine(line.substr(0, line.find_last_not_of("\r\n") + 1), command);
   if (command.number > 1) return StraightTravel(to, feed);
@@ -179,7 +187,7 @@ void GcodeOut::AppendE(Decimal filament) {
 }
 
 void GcodeOut::Feed(Decimal feed) {
-  Flush();
+  Begin(false);
   text_.append("G1");
   AppendWord('F', feed, NumberStyle{});
   EndLine();
@@ -187,7 +195,7 @@ void GcodeOut::Feed(Decimal feed) {
 }
 
 void GcodeOut::Lift(Decimal z, Decimal feed) {
-  Flush();
+  Begin(false);
   text_.append("G1");
   AppendWord('Z', z, file_.xy_style);
   if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
@@ -197,7 +205,7 @@ void GcodeOut::Lift(Decimal z, Decimal feed) {
 }
 
 void GcodeOut::Pull(Decimal filament, Decimal feed) {
-  Flush();
+  Begin(true);
   text_.append("G1");
   AppendE(-filament);
   if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
@@ -208,7 +216,7 @@ void GcodeOut::Pull(Decimal filament, Decimal feed) {
 void GcodeOut::Segment(std::string_view command, const Position& to, bool extrudes,
                        Decimal filament, Decimal feed, std::string_view words,
                        std::string_view comment) {
-  Flush();
+  Begin(false);
   if (feed != at.machine.feed && file_.feed_on_own_line) Feed(feed);
   text_.append(command);
   if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});

@@ -67,6 +67,8 @@ class GcodeOut {
                Decimal feed, std::string_view words, std::string_view comment);
 
  private:
+  // Before a command, which moves filament alone or not.
+  void Begin(bool pulls);
   void EndLine() { text_.append(line_end_); }
   void StraightTravel(const Position& to, Decimal feed);
   void CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
@@ -79,6 +81,7 @@ class GcodeOut {
   std::string line_end_;
   PrintState wanted_;  // in the slots of wanted_slots_
   SlotMask wanted_slots_ = 0;
+  bool pulled_;  // the last command moved filament alone; or the text before this pulled it back
 };
 
 }  // namespace traverse::gcode

@@ -40,8 +40,8 @@ TEST(GcodeOut, WritesAFeedRateOnce) {
   EXPECT_EQ(written().find('F'), std::string::npos);
 }
 
-// Nothing comes between a retraction and the wait behind it, wherever the one ends what is copied.
-TEST(GcodeOut, WaitsBeforeItSets) {
+// Nothing comes between a retraction and the wait beside it, wherever the one ends what is copied.
+TEST(GcodeOut, SetsNothingBetweenARetractionAndItsWait) {
   const auto file = Sketch()
                         .Add("M204 S500")
                         .Square(0, 0, 10)
@@ -49,18 +49,23 @@ TEST(GcodeOut, WaitsBeforeItSets) {
                         .GoRetracted(30, 5)
                         .Infill(31, 5)
                         .Read();
-  std::string text;
-  GcodeOut out(*file, StartBehind(*file, file->blocks[0]), text);
   LinkLine wait;
   wait.form = LineForm::kEdited;
   wait.raw = "M400\n";
   wait.step.kind = StepKind::kDwell;
+  const auto written = [&](Decimal retracted) {
+    PartStart start = StartBehind(*file, file->blocks[0]);
+    start.machine.retracted = retracted;
+    std::string text;
+    GcodeOut out(*file, start, text);
+    out.Set(file->states[file->blocks[1].state_in], kDynamicsSlots);
+    out.Edited(wait);
+    out.Pull(kDecimalOne, start.machine.feed);
+    return text.substr(0, text.find("G1"));
+  };
 
-  out.Set(file->states[file->blocks[1].state_in], kDynamicsSlots);
-  out.Edited(wait);
-  EXPECT_EQ(text, "M400\n");
-  out.Flush();
-  EXPECT_EQ(text, "M400\nM204 S800\n");
+  EXPECT_EQ(written(kDecimalOne), "M400\nM204 S800\n") << "it waits for what is pulled back";
+  EXPECT_EQ(written(0), "M204 S800\nM400\n") << "it waits before it pulls back";
 }
 
 }  // namespace
