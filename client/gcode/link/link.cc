@@ -171,6 +171,11 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   Decimal retracted = 0;
   PrintState state = start.state;
   bool marked = false;
+  // The steps up to the last travel but one, and what they leave behind.
+  size_t before_last = 0;
+  size_t up_to_last = 0;
+  PartStart behind_before_last;
+  PartStart behind_last;
   for (Step step; interpreter.Next(step);) {
     LinkStep added = StepOf(step, interpreter.state());
     marked = marked || added.kind == StepKind::kWipeMark;
@@ -191,12 +196,20 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.travel_state = state;
     }
     link.steps.push_back(added);
+    if (added.kind == StepKind::kTravel) {
+      before_last = std::exchange(up_to_last, link.steps.size());
+      behind_before_last = std::exchange(behind_last, {interpreter.state(), state});
+    }
     const bool of_script = step.line.begin < file.script_end;
     if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange || of_script) {
       link.fixed = link.steps.size();
       link.behind_fixed = {interpreter.state(), state};
       link.arrival = -1;
     }
+  }
+  if ((behind.link & kLinkAside) != 0 && before_last > link.fixed) {
+    link.fixed = before_last;
+    link.behind_fixed = behind_before_last;
   }
   NoteLift(link);
   return link;

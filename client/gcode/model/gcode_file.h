@@ -45,6 +45,9 @@ enum LinkFlag : uint16_t {
   kLinkFixedFrom = 1 << 8,
   kLinkRetractsAgain = 1 << 9,  // after a prime: no example for other links
   kLinkHeats = 1 << 10,         // sets a temperature
+  // To a layer no lower: leads beyond all that was printed before, and back. A script's, up to the
+  // last travel move.
+  kLinkAside = 1 << 11,
 };
 
 enum BlockFlag : uint16_t {

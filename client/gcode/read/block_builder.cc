@@ -151,7 +151,7 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
       !step.retracted) {
     link_.primes = true;
   }
-  if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
+  if (step.kind == StepKind::kTravel) NoteTravel(after.InMm(after.at));
   if (step.filament < 0) link_.flags |= kLinkRetracts;
   const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
   if (pulls && !step.retracted && link_.retracted) link_.flags |= kLinkRetractsAgain;
@@ -180,6 +180,17 @@ void BlockBuilder::NotePlace(const Step& step, const MachineState& after) {
              (step.command.Is('G', 0) || step.command.Is('G', 1))) {
     link_.found |= step.command.words & kAxes;
     link_.lost = link_.found != kAxes;
+  }
+}
+
+void BlockBuilder::NoteTravel(Point to) {
+  constexpr double kAsideMm = 10;  // slicers lead around walls, or away from them, by less
+  ++link_.travels_behind_fixed;
+  ++link_.travels_behind_aside;
+  if (least_.x <= most_.x && (to.x < least_.x - kAsideMm || to.y < least_.y - kAsideMm ||
+                              to.x > most_.x + kAsideMm || to.y > most_.y + kAsideMm)) {
+    link_.aside = true;
+    link_.travels_behind_aside = 0;
   }
 }
 
@@ -324,6 +335,12 @@ void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
       link_.flags &= static_cast<uint16_t>(~kLinkFixed);
       link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
+    // To the next object slicers lead the head aside themselves.
+    const bool aside = link_.aside && link_.travels_behind_aside > 0;
+    if (new_layer && aside && block.first.z >= last.last.z) {
+      link_.flags |= kLinkAside;
+      if ((link_.flags & kLinkFixed) == 0) link_.flags |= kLinkFixedFrom | kLinkSplits;
+    }
     if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
     // Such moves lead to another layer, or are a script's. Those to a scarf seam lead below the
     // height of its layer.
@@ -369,7 +386,10 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
                        : kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
-  file_.ends.push_back(after.InMm(after.at));
+  const Point end = after.InMm(after.at);
+  file_.ends.push_back(end);
+  least_ = {std::min(least_.x, end.x), std::min(least_.y, end.y)};
+  most_ = {std::max(most_.x, end.x), std::max(most_.y, end.y)};
   ++block.end_count;
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }

@@ -25,6 +25,8 @@ class BlockBuilder {
  private:
   enum class Where { kHead, kBody, kTail, kLink };
 
+  static constexpr double kBeyondMm = 1e9;
+
   // A line that machines interpret differently.
   struct LineFault {
     Offset at = 0;
@@ -44,6 +46,8 @@ class BlockBuilder {
     bool lost = false;             // a move that is not understood: its end is unknown
     uint32_t found = 0;            // axes that a move behind it states
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
+    bool aside = false;            // leads far beyond what was printed before
+    int travels_behind_aside = 0;  // moves in XY after the last one that does
     bool changes_tool = false;
     bool primes =
         false;  // behind a tool change, filament is pushed of which nothing was pulled back
@@ -58,6 +62,7 @@ class BlockBuilder {
   void TakeLabel(const Step& step);
   void NoteScript(const Step& step);
   void NotePlace(const Step& step, const MachineState& after);
+  void NoteTravel(Point to);
   void NoteInLink(const Step& step, const MachineState& before, const MachineState& after);
   bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
   void TakeTail(const Step& step, const MachineState& before, const MachineState& after);
@@ -93,6 +98,8 @@ class BlockBuilder {
   Where where_ = Where::kHead;
   uint16_t pending_ = 0;  // BlockFlags of lines after the last extruding one
   OpenLink link_;
+  Point least_{kBeyondMm, kBeyondMm};  // the corners of what is printed so far
+  Point most_{-kBeyondMm, -kBeyondMm};
 
   bool ends_rising_ = false;  // the last segment of the last block rises
 

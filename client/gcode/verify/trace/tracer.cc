@@ -219,6 +219,29 @@ bool Tracer::OnlyRounding() const {
                      [](const TraceMove& move) { return move.rounding; });
 }
 
+// Far beyond all that was deposited, as no slicer's own travel leads.
+bool Tracer::IsAside(Point at) const {
+  constexpr double kFarMm = 10;
+  return at.x < least_.x - kFarMm || at.x > most_.x + kFarMm || at.y < least_.y - kFarMm ||
+         at.y > most_.y + kFarMm;
+}
+
+// What leads aside on the way to a layer no lower, and back, is a script like unknown lines: up to
+// there it stays as it is.
+void Tracer::FixExcursion(double z_mm) {
+  const bool sinks = z_mm < printed_mm_ - kSameHeightMm;
+  if (!link_.new_layer || sinks || link_.first || least_.x > most_.x) return;
+  bool arrived = false;
+  for (size_t m = pending_.size(); m-- > link_.fixed;) {
+    if (pending_[m].kind != MoveKind::kTravel) continue;
+    if (std::exchange(arrived, true) && IsAside(pending_[m].to)) {
+      link_.scripted = true;
+      link_.fixed = static_cast<uint32_t>(m + 1);
+      return;
+    }
+  }
+}
+
 void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
   TracePath path;
   path.first_segment = static_cast<uint32_t>(chunk_.segments.size());
@@ -226,6 +249,7 @@ void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
                 static_cast<double>(motion.from[1]) * unit};
   path.z_mm = static_cast<double>(motion.to[2]) * unit;
   path.joined = in_path_ && pending_.empty();
+  FixExcursion(static_cast<double>(motion.from[2]) * unit);
   link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
   chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
   pending_.clear();
@@ -280,6 +304,9 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.filament_mm = static_cast<double>(motion.filament) * unit;
   segment.end = {static_cast<double>(motion.to[0]) * unit,
                  static_cast<double>(motion.to[1]) * unit};
+  printed_mm_ = static_cast<double>(motion.to[2]) * unit;
+  least_ = {std::min(least_.x, segment.end.x), std::min(least_.y, segment.end.y)};
+  most_ = {std::max(most_.x, segment.end.x), std::max(most_.y, segment.end.y)};
   segment.line = static_cast<uint32_t>(line.number);
   if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());

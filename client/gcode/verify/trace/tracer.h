@@ -35,6 +35,9 @@ class Tracer {
   TraceChunk TakeChunk(uint32_t end_section);
 
  private:
+  static constexpr double kBeyondMm = 1e9;
+  static constexpr double kSameHeightMm = 1e-6;
+
   void TakeComment(const VerifyLine& line, uint32_t section);
   void TakeWipeMark(bool begins, uint32_t line, uint32_t section);
   void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
@@ -43,6 +46,8 @@ class Tracer {
   void NotePlaces(double before_seconds);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
   bool OnlyRounding() const;
+  void FixExcursion(double z_mm);
+  bool IsAside(Point at) const;
   PathClass ClassNow(const VerifyLine& line) const;
 
   TraceChunk chunk_;
@@ -50,6 +55,9 @@ class Tracer {
   std::vector<TraceMove> pending_;
   std::vector<TraceCommand> pending_commands_;
   TraceLink link_;
+  double printed_mm_ = 0;              // the height of the last deposit
+  Point least_{kBeyondMm, kBeyondMm};  // the corners of all deposits so far
+  Point most_{-kBeyondMm, -kBeyondMm};
   std::array<float, static_cast<size_t>(PathClass::kCount)> length_of_{};
   std::optional<PathClass> named_;
   bool in_path_ = false;

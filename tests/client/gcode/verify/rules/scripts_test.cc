@@ -49,6 +49,21 @@ TEST(VerifyScripts, MoveToWhereTheHeadSeemsToBe) {
   }
 }
 
+// No slicer's own travel leads so far beyond the print.
+TEST(VerifyScripts, LeadAsideBetweenLayersAsTheyDid) {
+  const auto print = [](const std::string& aside, const std::string& second) {
+    return kHead + kTwo + ";LAYER_CHANGE\n" + aside + "G1 Z.4 F9000\n" + second;
+  };
+  const std::string far = "G1 X5 Y40 F9000\n";
+  const std::string near = "G1 X5 Y9 F9000\n";
+  const std::string a = print(far, kTwo);
+
+  EXPECT_EQ(Broken(a, print(far, kOneTurned)), "");
+  EXPECT_THAT(Broken(a, print("", kOneTurned)), HasSubstr("scripts"));
+  EXPECT_THAT(Broken(a, print("G1 X5 Y45 F9000\n", kOneTurned)), HasSubstr("scripts"));
+  EXPECT_EQ(Broken(print(near, kTwo), print("", kOneTurned)), "");
+}
+
 TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
   const std::string end =
       "G1 E-1 F2100\nM107\nG1 E-2 F2400\nG1 Z3 F600\nG1 X5 Y187 F9000\nG1 Z11 F600\n"
