@@ -21,6 +21,7 @@ REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no
 SHARE_SLACK = 2.0  # points of a per cent
 ACCEL = 3  # in print_trace.STATE
 USUAL_ACCEL = 1000.0
+ASIDE_MM = 12.0  # no slicer's own travel leads so far beyond the print, but from object to object
 FARTHEST_MM = 10000.0  # from the origin: no head goes there, but a file may say so
 
 
@@ -590,7 +591,34 @@ def wipes(before, after, options):
         yield f"wipes: {old} wipes that pull filament back along a path became {new}"
 
 
+# ------------------------------------------------------------------------------------------------------------- scripts
+
+
+def excursions(side):
+    """Where the head is led far beyond all that is printed so far, and back, on the way to a higher layer."""
+    least, most, height, led, found = [math.inf] * 2, [-math.inf] * 2, None, [], []
+    for move in side.moves:
+        end = (round(move.x1, 3), round(move.y1, 3))
+        if not move.deposits:
+            if move.length:
+                led.append(end)
+            continue
+        if height is not None and move.z0 > height + FINE_MM:
+            found += [place for place in led[:-1] if any(
+                place[axis] < least[axis] - ASIDE_MM or place[axis] > most[axis] + ASIDE_MM for axis in (0, 1))]
+        height, led = move.z1, []
+        least, most = list(map(min, least, end)), list(map(max, most, end))
+    return found
+
+
+def asides(before, after, options):
+    """Scripts that park the head or clean the nozzle between layers still do."""
+    old, new = excursions(before), excursions(after)
+    if old != new:
+        yield f"asides: between layers the head was led far beyond the print and back to {len(old)} places, now to {len(new)}"
+
+
 ALL = {check.__name__: check for check in (deposits, filament, obstacles, ironing, rest, progress, labels, head_and_tail,
-                                           lifts, wipes)}
+                                           lifts, wipes, asides)}
 # Where filament stays in the nozzle on purpose, this says how much of it may show.
 ALL["stringing"] = stringing

@@ -11,6 +11,7 @@ import generate  # noqa: E402
 import judge  # noqa: E402
 import print_trace  # noqa: E402
 import shrink  # noqa: E402
+import vary  # noqa: E402
 
 HEAD = ["M83", "G90", "; nozzle_diameter = 0.4"]
 
@@ -42,6 +43,15 @@ class Checks(unittest.TestCase):
         after = HEAD + layer(0.2, block(40, 0.2), block(10, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
 
         self.assertEqual(faults(self.towers, after), set())
+
+    def test_a_park_that_is_left_out_is_found(self):
+        def print_with(script):
+            first, second = (layer(z, block(10, z), block(40, z)) for z in (0.2, 0.4))
+            return HEAD + first + second[:2] + script + second[2:]
+
+        park = print_with(["G1 X1 Y90 F9000"])
+        self.assertEqual(faults(park, park), set())
+        self.assertIn("asides", faults(park, print_with([])))
 
     def test_a_lost_path_is_found(self):
         after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(10, 0.4))
@@ -122,7 +132,7 @@ class Checks(unittest.TestCase):
         self.assertIn("rest", faults(before, turned + layer(0.6, tower(40), tower(10))))
 
     def test_an_island_that_is_printed_twice_running_needs_no_rest(self):
-        away = ["G1 X200 Y200 F1800"]  # of 8 s
+        away = ["G1 X20 Y21 F90"]  # of 10 s
         before = HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, away, block(10, 0.4))
         after = HEAD + layer(0.2, block(10, 0.2)) + layer(0.4, block(10, 0.4))
 
@@ -366,6 +376,20 @@ class Generate(unittest.TestCase):
 
             self.assertEqual(text, generate.print_of(name, 3))
             self.assertGreater(len(print_trace.trace(text).deposits()), 20, name)
+
+
+class Variants(unittest.TestCase):
+    def test_they_deposit_the_same(self):
+        towers = Checks.towers[:-1] + ["G1 E-1 F2100", "G1 X70 Y10 F9000", "G1 E1 F2100"] + block(70, 0.4)
+        before = print_trace.trace("\n".join(towers))
+        options = judge.Options("safe", 10.0, 0.131)
+        names = set()
+        for name, lines in vary.variants(towers):
+            after = print_trace.trace("\n".join(lines))
+            names.add(name)
+            self.assertNotEqual(lines, towers, name)
+            self.assertEqual(list(checks.deposits(before, after, options)), [], name)
+        self.assertTrue({"e_absolute", "inches", "park_retracted_at_rises", "waits"} <= names)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ import math
 import re
 
 WORD = re.compile(r"([A-Z])\s*(-?\+?(?:\d+\.?\d*|\.\d+))")
+CODE = re.compile(r"[GMT]\d+(?:\.\d+)?", re.I)  # words may follow without a blank
+FIRST = re.compile(r"\S+")
+NUMBERED = re.compile(r"\s*N\d+\s+|\s*\*\s*\d+\s*$", re.I)  # a line's number and check, of which hosts have no use
 NAMED = re.compile(r"(\w+)=('[^']*'|\"[^\"]*\"|\S+)")
 FEATURE = re.compile(r";\s*(?:TYPE|FEATURE):\s*(.+)")
 # Comments that say which object is printed: (pattern, whether it begins one).
@@ -213,7 +216,7 @@ class Machine:
             self.set("tool", code)
 
     def run(self, number, text):
-        code = text.split(None, 1)[0].upper()
+        code = (CODE.match(text) or FIRST.match(text))[0].upper()
         words = {letter: float(value) for letter, value in WORD.findall(text.upper())}
         kind = re.match(r"G0*(\d+)$", code)
         g = int(kind.group(1)) if kind else None
@@ -247,6 +250,7 @@ def trace(text):
     lines = text.splitlines()
     for number, line in enumerate(lines, 1):
         code, mark, comment = line.partition(";")
+        code = NUMBERED.sub("", code)
         if code := code.strip().upper() if code.strip()[:1] in "gmt" else code.strip():
             machine.run(number, code)
         if mark:
