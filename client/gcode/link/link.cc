@@ -171,6 +171,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   Decimal retracted = 0;
   PrintState state = start.state;
   bool marked = false;
+  const bool aside = (behind.link & kLinkAside) != 0;
   // The steps up to the last travel but one, and what they leave behind.
   size_t before_last = 0;
   size_t up_to_last = 0;
@@ -196,7 +197,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.travel_state = state;
     }
     link.steps.push_back(added);
-    if (added.kind == StepKind::kTravel) {
+    if (aside && added.kind == StepKind::kTravel) {
       before_last = std::exchange(up_to_last, link.steps.size());
       behind_before_last = std::exchange(behind_last, {interpreter.state(), state});
     }
@@ -207,7 +208,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.arrival = -1;
     }
   }
-  if ((behind.link & kLinkAside) != 0 && before_last > link.fixed) {
+  if (before_last > link.fixed) {
     link.fixed = before_last;
     link.behind_fixed = behind_before_last;
   }
