@@ -172,11 +172,9 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   PrintState state = start.state;
   bool marked = false;
   const bool aside = (behind.link & kLinkAside) != 0;
-  // The steps up to the last travel but one, and what they leave behind.
-  size_t before_last = 0;
-  size_t up_to_last = 0;
-  PartStart behind_before_last;
-  PartStart behind_last;
+  // The steps up to the last travel, and what they leave behind.
+  size_t up_to_travel = 0;
+  PartStart behind_travel;
   for (Step step; interpreter.Next(step);) {
     LinkStep added = StepOf(step, interpreter.state());
     marked = marked || added.kind == StepKind::kWipeMark;
@@ -189,6 +187,12 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     if (added.kind == StepKind::kSlot) {
       ApplySetter(state, file.setters.Find(step.line.Text(file.text)), step.slots);
     }
+    const bool travels_on = aside && added.kind == StepKind::kTravel;
+    if (travels_on && up_to_travel > link.fixed) {
+      link.fixed = up_to_travel;
+      link.behind_fixed = behind_travel;
+      link.arrival = -1;
+    }
     // If CuraEngine primes before the last stretch of the travel, the travel proper ends there.
     const bool behind_prime = link.retracts() && !step.retracted;
     if (added.kind == StepKind::kTravel && (link.arrival < 0 || !behind_prime)) {
@@ -197,9 +201,9 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.travel_state = state;
     }
     link.steps.push_back(added);
-    if (aside && added.kind == StepKind::kTravel) {
-      before_last = std::exchange(up_to_last, link.steps.size());
-      behind_before_last = std::exchange(behind_last, {interpreter.state(), state});
+    if (travels_on) {
+      up_to_travel = link.steps.size();
+      behind_travel = {interpreter.state(), state};
     }
     const bool of_script = step.line.begin < file.script_end;
     if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange || of_script) {
@@ -207,10 +211,6 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.behind_fixed = {interpreter.state(), state};
       link.arrival = -1;
     }
-  }
-  if (before_last > link.fixed) {
-    link.fixed = before_last;
-    link.behind_fixed = behind_before_last;
   }
   NoteLift(link);
   return link;
