@@ -70,8 +70,8 @@ void LinkComposer::ComposeBoundary() {
   if (link.fixed > 0) {
     link_.Keep({before.end, link.steps[link.fixed - 1].line.next, StartBehind(file_, before),
                 link.behind_fixed});
-  } else if (from_.block().object == before.object ||
-             (file_.blocks[boundary].link & kLinkNewLayer) != 0) {
+  } else if (!MarksObjectsOnly(link) && (from_.block().object == before.object ||
+                                         (file_.blocks[boundary].link & kLinkNewLayer) != 0)) {
     // Whatever was printed last: at its marks the fan is as in the file.
     link_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }

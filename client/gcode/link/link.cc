@@ -283,6 +283,15 @@ bool LeadsAside(const Link& link, size_t i) {
   return false;
 }
 
+bool MarksObjectsOnly(const Link& link) {
+  bool labels = false;
+  for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kLayerMark || step.kind == StepKind::kStay) return false;
+    labels = labels || step.kind == StepKind::kLabel;
+  }
+  return labels;
+}
+
 SlotMask SetBeforeMarks(const Link& link) {
   SlotMask slots = 0;
   for (const LinkStep& step : link.steps) {

@@ -118,6 +118,9 @@ bool LabelsBeforeTravel(const Link& link);
 // where there is nothing in the way, to the next object of a print one by one.
 bool LeadsAside(const Link& link, size_t i);
 
+// It has labels of objects, at which nothing is done, and no other marks.
+bool MarksObjectsOnly(const Link& link);
+
 // The slots that the link itself sets before its first mark.
 SlotMask SetBeforeMarks(const Link& link);
 
