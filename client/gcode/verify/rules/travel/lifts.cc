@@ -270,21 +270,19 @@ bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
   return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
 }
 
-// The same, and it is no more than that: when it is short, most of it lies low.
-bool IsUsualSlope(const Observations& was, const LiftLog& log, const TravelProfile& travel) {
-  return travel.end == travel.first + 1 && BeginsWithUsualSlope(was, log, travel);
-}
-
-// True if the travel begins so, or is all of it a slope where others begin so, and is not low
-// behind that slope: the shorter it is, the larger is the share of the slope.
-bool SlopesAtOnce(const Observations& was, const LiftLog& log, const TravelProfile& travel,
+// The same, and it is not low behind that slope: on the slope itself it is no lower than such
+// travel of the original, whatever part of it that is.
+bool RisesAsUsual(const Observations& was, const LiftLog& log, const TravelProfile& travel,
                   float lift) {
-  const TravelProfile::Piece& piece = log.pieces[travel.first];
-  const bool all = travel.end == travel.first + 1 && piece.to_mm > piece.from_mm;
-  if (!(all && !was.slopes.empty()) && !BeginsWithUsualSlope(was, log, travel)) return false;
   TravelProfile behind = travel;
   ++behind.first;
-  return LowLength(log, behind, lift) <= kLeastMoveMm;
+  return BeginsWithUsualSlope(was, log, travel) && LowLength(log, behind, lift) <= kLeastMoveMm;
+}
+
+// All of it is a slope, as short as it is, where longer travel begins with one.
+bool RisesAllAlong(const Observations& was, const LiftLog& log, const TravelProfile& travel) {
+  const TravelProfile::Piece& piece = log.pieces[travel.first];
+  return travel.end == travel.first + 1 && piece.to_mm > piece.from_mm && !was.slopes.empty();
 }
 
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
@@ -306,10 +304,9 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const float low = LowLength(is.lifts, travel, habit.least_mm);
     const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, travel, habit.least_mm);
     const bool lies_low =
-        low > kLeastTravelMm &&
-        (low > habit.low_mm || (low / height.length_mm > habit.low_share &&
-                                !SlopesAtOnce(was, is.lifts, travel, habit.least_mm))) &&
-        !IsUsualSlope(was, is.lifts, travel);
+        low > kLeastTravelMm && !RisesAsUsual(was, is.lifts, travel, habit.least_mm) &&
+        (low > habit.low_mm ||
+         (low / height.length_mm > habit.low_share && !RisesAllAlong(was, is.lifts, travel)));
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, travel, kind, habit.least_mm)) continue;

@@ -223,6 +223,27 @@ TEST(VerifyLifts, OnASlopeMayBeShorterThanThat) {
   EXPECT_EQ(Broken(a, other("G1 X0 Y54.8 Z.21 F9000\n")), "lifts");
 }
 
+// Nor is it low where other travel across walls rises at once.
+TEST(VerifyLifts, OnASlopeOfTheOriginalMayLeadAcrossWalls) {
+  const auto line = [](const std::string& rise, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\n", rise, "G1 ", from, " F9000\nG1 Z.2 F720\n",
+                        "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const std::string begin = kHead + Line("External perimeter", "X20 Y50", "X20 Y-9") +
+                            Line("Internal infill", "X0 Y0", "X10 Y0");
+  const std::string at_once = "G1 Z.6 F9000\n";
+  const std::string a = begin + line("G1 X10 Y3 Z.6 F9000\n", "X10 Y20", "X0 Y20") +
+                        line(at_once, "X30 Y20", "X40 Y20") +
+                        line("G1 X40 Y23 Z.6 F9000\n", "X40 Y40", "X30 Y40");
+  const auto other = [&](const char* slope) {
+    return begin + line(absl::StrCat("G1 ", slope, " F9000\n"), "X40 Y40", "X30 Y40") +
+           line("G1 X30 Y37 Z.6 F9000\n", "X30 Y20", "X40 Y20") +
+           line(at_once, "X10 Y20", "X0 Y20");
+  };
+  EXPECT_EQ(Broken(a, other("X11.8 Y2.4 Z.6")), "");
+  EXPECT_EQ(Broken(a, other("X13.6 Y4.8 Z.6")), "lifts");
+}
+
 // Lines of infill with retracted travel moves to them, each lifted but for that to line `low`.
 std::string Lines(int count, int low) {
   std::string text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
