@@ -38,10 +38,13 @@ LinkForm LayerLinks::FormOf(const Placement& from, Point end, const Placement& t
   return form;
 }
 
-// No move at a boundary is hidden.
+// No move at a boundary is hidden, and none beside a path during which the nozzle counts as closed:
+// to leave out what closes it does not open it.
 void LayerLinks::Hide(const Placement& from, const Placement& to, bool bends,
                       LinkForm& form) const {
   if (!hides_ || !form.retracts || form.boundary || from.block < layer_.first_block) return;
+  if (((file_.blocks[from.block].flags | file_.blocks[to.block].flags) & kBlockRetracted) != 0)
+    return;
   if (rules_.Hides(departures_.Open(from), departures_.Begin(to), FeatureOf(to))) {
     return form.Hide(OpenTravel(from, to));
   }

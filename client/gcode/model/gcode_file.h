@@ -51,20 +51,21 @@ enum LinkFlag : uint16_t {
 };
 
 enum BlockFlag : uint16_t {
-  kBlockTail = 1 << 0,      // ends with a short move at print speed that extrudes nothing
-  kBlockCoast = 1 << 1,     // that move completes the path with the pressure left in the nozzle
-  kBlockFan = 1 << 2,       // the fan changes inside it
-  kBlockType = 1 << 3,      // the feature changes inside it
-  kBlockComments = 1 << 4,  // has comments inside without meaning here
-  kBlockProgress = 1 << 5,  // has lines of progress inside
-  kBlockPinned = 1 << 6,    // printed while retracted or rising, or no true arc: stays as it is
-  kBlockState = 1 << 7,     // some slot changes inside it
-  kBlockZero = 1 << 8,      // has a segment whose extrusion rounds to nothing
-  kBlockScript = 1 << 9,    // before the first mark of a layer: a start script's
-  kBlockCommand = 1 << 10,  // a command inside it sets a slot
-  kBlockGoesOn = 1 << 11,   // closed; a move without filament continues along it after its end
-  kBlockArcs = 1 << 12,     // has arcs
-  kBlockOwnFan = 1 << 13,   // the link before it sets the fan, changed or not
+  kBlockTail = 1 << 0,        // ends with a short move at print speed that extrudes nothing
+  kBlockCoast = 1 << 1,       // that move completes the path with the pressure left in the nozzle
+  kBlockFan = 1 << 2,         // the fan changes inside it
+  kBlockType = 1 << 3,        // the feature changes inside it
+  kBlockComments = 1 << 4,    // has comments inside without meaning here
+  kBlockProgress = 1 << 5,    // has lines of progress inside
+  kBlockPinned = 1 << 6,      // printed while retracted or rising, or no true arc: stays as it is
+  kBlockState = 1 << 7,       // some slot changes inside it
+  kBlockZero = 1 << 8,        // has a segment whose extrusion rounds to nothing
+  kBlockScript = 1 << 9,      // before the first mark of a layer: a start script's
+  kBlockCommand = 1 << 10,    // a command inside it sets a slot
+  kBlockGoesOn = 1 << 11,     // closed; a move without filament continues along it after its end
+  kBlockArcs = 1 << 12,       // has arcs
+  kBlockOwnFan = 1 << 13,     // the link before it sets the fan, changed or not
+  kBlockRetracted = 1 << 14,  // printed while retracted
 };
 
 struct Block {

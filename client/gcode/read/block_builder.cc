@@ -377,6 +377,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   const bool begins_layer = layer.first_block + 1 == file_.blocks.size();
   ends_rising_ = after.at.z > before.at.z;
   if (begins_layer && ends_rising_) layer.z = std::max(layer.z, after.at.z);
+  if (step.retracted) block.flags |= kBlockRetracted;
   if (step.retracted || after.at.z < before.at.z || (ends_rising_ && !IsScarf(block, layer))) {
     block.flags |= kBlockPinned;
   }

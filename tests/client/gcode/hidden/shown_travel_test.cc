@@ -221,6 +221,15 @@ TEST(ShownTravel, StaysRetractedWherePrimesPushMoreOrLess) {
   }
 }
 
+// Firmware pulls filament back in the third layer, and never pushes it again.
+TEST(ShownTravel, StaysRetractedWhereTheNozzleCountsAsClosed) {
+  std::string text = PrintOf(Cases()[0]);
+  text.insert(text.find("G1 E-.8", text.find("Z0.6")), "G10\n");
+  const std::string fast = Fast(text);
+  EXPECT_EQ(Name(GoesTo(fast, 1, kSecondLine)), "open");
+  EXPECT_EQ(Name(GoesTo(fast, 3, kSecondLine)), "retracted");
+}
+
 // Loops that are called infill are no walls; where nothing has a name, all loops are.
 TEST(ShownTravel, StaysRetractedWithinWallsThatAreNotKnown) {
   const std::string misnamed = absl::StrReplaceAll(Boxes(), {{";TYPE:External perimeter\n", ""}});
