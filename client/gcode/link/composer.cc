@@ -13,16 +13,16 @@ namespace {
 // What is left of a travel move behind a slope is at least this long.
 constexpr double kMinSlopeRestMm = 0.5;
 
-// `rise` for travel of `length`: a slope that lasts as long as its travel rises on, up to
-// `highest`.
-Link Stretched(Link rise, double length, Decimal highest) {
+// `rise` for travel of `length`, in words of `unit_mm`: a slope that lasts as long as its travel
+// rises on, up to `highest`.
+Link Stretched(Link rise, double length, Decimal highest, double unit_mm) {
   if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
   const double steepness = static_cast<double>(rise.lift) / rise.ramp_mm;
   const auto reached = static_cast<double>(std::max(highest, rise.lift));
   rise.ramp_ends = steepness * length > reached;
   rise.ramp_mm = rise.ramp_ends ? reached / steepness : length;
   // As slicers write heights: to micrometres.
-  rise.lift = RoundedWord(steepness * rise.ramp_mm * 1e-9);
+  rise.lift = RoundedWord(steepness * rise.ramp_mm * 1e-9, unit_mm);
   return rise;
 }
 
@@ -31,7 +31,7 @@ Link Stretched(Link rise, double length, Decimal highest) {
 void Slope(const Position& from, const Link& rise, double unit_mm, std::vector<Position>& travel) {
   if (!rise.ramp_ends) return;
   if (LengthXy(from, travel.front()) < rise.ramp_mm + kMinSlopeRestMm / unit_mm) return;
-  Position end = Along(from, travel.front(), rise.ramp_mm);
+  Position end = Along(from, travel.front(), rise.ramp_mm, unit_mm);
   end.z = travel.front().z;
   travel.insert(travel.begin(), end);
 }
@@ -107,8 +107,9 @@ void LinkComposer::ComposePlain() {
   const Link like = form_.hidden ? LikeHidden() : LikeWhat(form_.retracts);
   SetTravelState(like);
   const Link left = Depart(like);
-  const Link rise = Stretched(left.lift > like.lift ? left : like,
-                              LengthXy(link_.at(), to_.first()), donors_.highest_lift());
+  const Link rise =
+      Stretched(left.lift > like.lift ? left : like, LengthXy(link_.at(), to_.first()),
+                donors_.highest_lift(), link_.machine().UnitMm());
   // A scarf seam begins lower than its layer.
   const Decimal height = std::max(to_.first().z, to_.last().z);
   if (!IsBoundary(to_.block())) AddSaid();

@@ -11,13 +11,14 @@ namespace traverse::gcode {
 namespace {
 
 // Points on an arc, so near to each other that the lines between them are as good.
-std::vector<Position> BendsOf(const BodySegment& segment) {
-  constexpr double kTolerance = 0.01;
+std::vector<Position> BendsOf(const BodySegment& segment, double unit_mm) {
+  constexpr double kToleranceMm = 0.01;
   std::vector<Position> bends;
   if (segment.command < 2) return bends;
   for (const Point& point :
-       ArcPoints(ArcCommand(segment), segment.from, segment.to, 1, kTolerance)) {
-    bends.push_back({RoundedWord(point.x), RoundedWord(point.y), segment.from.z});
+       ArcPoints(ArcCommand(segment), segment.from, segment.to, unit_mm, kToleranceMm)) {
+    bends.push_back(InWords(point, unit_mm));
+    bends.back().z = segment.from.z;
   }
   return bends;
 }
@@ -25,10 +26,10 @@ std::vector<Position> BendsOf(const BodySegment& segment) {
 // The way back from beside a path is searched for in so many steps, until its length fits as far as
 // coordinates tell.
 constexpr int kMostSteps = 8;
-constexpr double kRounding = 0.002;
+constexpr double kRoundingMm = 0.002;
 
-// In inches, thousandths are too coarse for a gap; and a segment whose filament was rounded to
-// nothing may be what stands beside it.
+// The limits of gaps are in mm; and a segment whose filament was rounded to nothing may be what
+// stands beside one.
 bool MayMoveGap(const GcodeFile& file, const Block& block) {
   return !file.modes[block.mode].inches && (block.flags & kBlockZero) == 0;
 }
@@ -87,7 +88,8 @@ void PlacedPath::PlaceReversed() {
   if (!body_.has_tail) return;
   // As long a tail as the path's own, straight on beyond its new end.
   const BodySegment& end = segments.back();
-  body_.tail_end = Along(end.from, end.to, LengthXy(end.from, end.to) + body_.tail_length);
+  body_.tail_end =
+      Along(end.from, end.to, LengthXy(end.from, end.to) + body_.tail_length, unit_mm());
   last_.x = body_.tail_end.x;
   last_.y = body_.tail_end.y;
 }
@@ -100,50 +102,50 @@ void PlacedPath::PlaceRotated() {
   last_ = segments.back().to;
 }
 
-std::vector<Position> PlacedPath::Retrace(double length_mm) const {
-  if (!as_given()) return RetraceOver(body_.segments, length_mm);
-  return RetraceOver(ReadBody(*file_, block()).segments, length_mm);
+std::vector<Position> PlacedPath::Retrace(double length) const {
+  if (!as_given()) return RetraceOver(body_.segments, length);
+  return RetraceOver(ReadBody(*file_, block()).segments, length);
 }
 
 std::vector<Position> PlacedPath::RetraceOver(const std::vector<BodySegment>& segments,
-                                              double length_mm) const {
+                                              double length) const {
   std::vector<Position> travel;
   Position at = last_;
   const auto go_to = [&](const Position& to) {
     const double step = LengthXy(at, to);
     const Position from = at;
-    at = step <= length_mm ? to : Along(at, to, length_mm);
-    length_mm -= step;
+    at = step <= length ? to : Along(at, to, length, unit_mm());
+    length -= step;
     // What is left of the length may be less than coordinates tell.
     if (!at.SameXy(from)) travel.push_back(at);
   };
   // A loop that ends short of its start is wiped across that gap, and on along its beginning.
   if (placement_.closed) go_to(first_);
   const size_t n = segments.size();
-  for (size_t i = 0; i < n && length_mm > 0; ++i) {
+  for (size_t i = 0; i < n && length > 0; ++i) {
     const BodySegment next = placement_.closed ? segments[i] : Reversed(segments[n - 1 - i]);
-    for (const Position& bend : BendsOf(next)) {
-      if (length_mm > 0) go_to(bend);
+    for (const Position& bend : BendsOf(next, unit_mm())) {
+      if (length > 0) go_to(bend);
     }
-    if (length_mm > 0) go_to(next.to);
+    if (length > 0) go_to(next.to);
   }
   return travel;
 }
 
-std::vector<Position> PlacedPath::RetraceFrom(const Position& begin, double length_mm) const {
-  if (begin.SameXy(last_)) return Retrace(length_mm);
+std::vector<Position> PlacedPath::RetraceFrom(const Position& begin, double length) const {
+  if (begin.SameXy(last_)) return Retrace(length);
   const PathBody given = as_given() ? ReadBody(*file_, block()) : PathBody();
   const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
   // Going back to the path from aside cuts a corner, so the same length leads farther along.
-  const double farthest_mm = length_mm + 2 * LengthXy(last_, begin);
+  const double farthest = length + 2 * LengthXy(last_, begin);
   std::vector<Position> travel;
-  double along_mm = length_mm;
+  double along = length;
   for (int step = 0; step < kMostSteps; ++step) {
-    travel = RetraceOver(segments, along_mm);
+    travel = RetraceOver(segments, along);
     if (travel.size() > 1 && travel.front().SameXy(first_)) travel.erase(travel.begin());
-    const double missing_mm = length_mm - LengthXy(begin, travel);
-    if (missing_mm < kRounding || along_mm >= farthest_mm) break;
-    along_mm = std::min(along_mm + missing_mm, farthest_mm);
+    const double missing = length - LengthXy(begin, travel);
+    if (missing < kRoundingMm / unit_mm() || along >= farthest) break;
+    along = std::min(along + missing, farthest);
   }
   return travel;
 }

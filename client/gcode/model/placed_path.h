@@ -64,12 +64,13 @@ class PlacedPath {
   const PathBody& body() const { return body_; }
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back
-  // along an open one. At most `length` mm, at least one point if the path has any length.
-  std::vector<Position> Retrace(double length_mm) const;
+  // along an open one. At most `length`, in words; at least one point if the path has any
+  // length.
+  std::vector<Position> Retrace(double length) const;
 
   // The same for a head at `begin`, which may have left the path: then it returns to it behind the
-  // gap of a closed path. At most `length` mm from `begin` on.
-  std::vector<Position> RetraceFrom(const Position& begin, double length_mm) const;
+  // gap of a closed path. At most `length` from `begin` on.
+  std::vector<Position> RetraceFrom(const Position& begin, double length) const;
 
  private:
   void PlaceGiven();
@@ -77,8 +78,9 @@ class PlacedPath {
   void PlaceRotated();
 
   // Retrace; `segments` are those of the path as it is placed.
-  std::vector<Position> RetraceOver(const std::vector<BodySegment>& segments,
-                                    double length_mm) const;
+  std::vector<Position> RetraceOver(const std::vector<BodySegment>& segments, double length) const;
+
+  double unit_mm() const { return file_->modes[block().mode].UnitMm(); }
 
   const GcodeFile* file_;
   Placement placement_;

@@ -12,14 +12,16 @@
 
 namespace traverse::gcode {
 
-// New positions are written in thousandths.
-inline Decimal RoundedWord(double value) {
-  return static_cast<Decimal>(std::llround(value * 1000)) * (kDecimalOne / 1000);
+// New positions are written as slicers do, to thousandths of a mm; in longer units as finely at
+// least.
+inline Decimal RoundedWord(double value, double unit_mm) {
+  const Decimal step = unit_mm > 1 ? kDecimalOne / 100'000 : kDecimalOne / 1000;
+  return std::llround(value * static_cast<double>(kDecimalOne / step)) * step;
 }
 
 // A point in mm, in words of `unit_mm`; at no height.
 inline Position InWords(Point mm, double unit_mm) {
-  return {RoundedWord(mm.x / unit_mm), RoundedWord(mm.y / unit_mm), 0};
+  return {RoundedWord(mm.x / unit_mm, unit_mm), RoundedWord(mm.y / unit_mm, unit_mm), 0};
 }
 
 inline double LengthXy(const Position& from, const Position& to) {
@@ -33,14 +35,14 @@ inline double LengthXy(Position from, const std::vector<Position>& travel) {
   return length;
 }
 
-// The point `length_mm` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
-// itself.
-inline Position Along(const Position& from, const Position& to, double length_mm) {
-  const double length = LengthXy(from, to);
+// The point that lies `length` beyond `from` towards `to`, in words of `unit_mm`, at the height of
+// `from`; not rounded up to `to` itself.
+inline Position Along(const Position& from, const Position& to, double length, double unit_mm) {
+  const double whole = LengthXy(from, to);
   Position at = from;
-  if (!(length > 0)) return at;
-  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * length_mm);
-  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * length_mm);
+  if (!(whole > 0)) return at;
+  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / whole * length, unit_mm);
+  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / whole * length, unit_mm);
   return at;
 }
 

@@ -68,7 +68,7 @@ bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
   const double gap = LengthXy(closing.from, closing.to);
   const double length = LengthXy(end.from, end.to);
   end.filament -= closing.filament;
-  end.to = Along(end.from, end.to, length - gap);
+  end.to = Along(end.from, end.to, length - gap, 1);
   BodySegment& last = segments.back();
   // Of two segments both would be other ones: nothing would tell which loop it is.
   const bool only_two = segments.size() == 2;

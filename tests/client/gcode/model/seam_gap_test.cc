@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-Position At(double x, double y) { return {RoundedWord(x), RoundedWord(y), 0}; }
+Position At(double x, double y) { return {RoundedWord(x, 1), RoundedWord(y, 1), 0}; }
 
 // A square of 10 mm that ends `gap` short of its start, with .04 mm of filament per mm.
 std::vector<BodySegment> Square(double gap) {
@@ -19,7 +19,7 @@ std::vector<BodySegment> Square(double gap) {
     BodySegment& segment = segments.emplace_back();
     segment.from = points[i - 1];
     segment.to = points[i];
-    segment.filament = RoundedWord(.04 * LengthXy(segment.from, segment.to));
+    segment.filament = RoundedWord(.04 * LengthXy(segment.from, segment.to), 1);
     segment.feed = 1200 * kDecimalOne;
   }
   return segments;
@@ -41,9 +41,9 @@ TEST(MoveGap, ClosesTheGapAndLeavesTheSameAtTheNewStart) {
   ASSERT_EQ(segments.size(), 4u);
   EXPECT_EQ(segments[3].from, At(0, 10));
   EXPECT_EQ(segments[3].to, At(0, 0));
-  EXPECT_EQ(segments[3].filament, RoundedWord(.4));
+  EXPECT_EQ(segments[3].filament, RoundedWord(.4, 1));
   EXPECT_EQ(segments[1].to, At(10, 9.9));
-  EXPECT_EQ(segments[1].filament, RoundedWord(.396));
+  EXPECT_EQ(segments[1].filament, RoundedWord(.396, 1));
   EXPECT_EQ(segments[2].from, At(10, 10));
   EXPECT_EQ(FilamentOf(segments), filament);
 }
@@ -56,7 +56,7 @@ TEST(MoveGap, ClosesTheGapOfALoopThatBeginsWithItsLastSide) {
 
   ASSERT_EQ(segments.size(), 4u);
   EXPECT_EQ(segments[3].to, At(0, 0));
-  EXPECT_EQ(segments[3].filament, RoundedWord(.4));
+  EXPECT_EQ(segments[3].filament, RoundedWord(.4, 1));
   EXPECT_EQ(segments[2].to, At(.1, 10));
   EXPECT_EQ(FilamentOf(segments), filament);
 }
@@ -77,10 +77,10 @@ TEST(MoveGap, ClosesTheGapByASegmentOfItsOwnWhereTheLastOneCannotGoOn) {
   ASSERT_EQ(segments.size(), 5u);
   EXPECT_EQ(segments[4].from, At(.003, .1));
   EXPECT_EQ(segments[4].to, At(0, 0));
-  EXPECT_EQ(segments[4].filament, RoundedWord(.004));
+  EXPECT_EQ(segments[4].filament, RoundedWord(.004, 1));
   EXPECT_EQ(segments[4].feed, segments[3].feed);
   EXPECT_EQ(segments[1].to, At(10, 9.9));
-  EXPECT_EQ(segments[1].filament, RoundedWord(.396));
+  EXPECT_EQ(segments[1].filament, RoundedWord(.396, 1));
   EXPECT_EQ(segments[2].from, At(10, 10));
   EXPECT_EQ(FilamentOf(segments), filament);
 }
@@ -101,14 +101,14 @@ TEST(MoveGap, ChangesNothingWhereThePrintWouldNotBeTheSame) {
     EXPECT_TRUE(stays(segments)) << arc;
   }
   std::vector<BodySegment> narrow = Square(.1);
-  narrow[1].filament = RoundedWord(.39);
+  narrow[1].filament = RoundedWord(.39, 1);
   EXPECT_TRUE(stays(narrow));
   std::vector<BodySegment> empty = Square(.1);
   empty[3].filament = 0;
   EXPECT_TRUE(stays(empty));
   std::vector<BodySegment> brief = Square(.1);
   brief[1].from = At(10, 9.82);
-  brief[1].filament = RoundedWord(.007);
+  brief[1].filament = RoundedWord(.007, 1);
   EXPECT_TRUE(stays(brief));
 }
 
