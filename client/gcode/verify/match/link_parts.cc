@@ -14,6 +14,9 @@ namespace {
 
 constexpr int64_t kSlackUm = 2;
 
+// By what two words in inches are rounded.
+constexpr Micro kAmountSlack = 600;
+
 // So many parts that differ in amounts and heights alone are remembered; no slicer has as many.
 constexpr size_t kMostAlike = 256;
 
@@ -38,8 +41,8 @@ bool IsAtTheSameHeight(const PartStep& a, const PartStep& b) {
 
 bool IsLike(const PartStep& known, const PartStep& step) {
   return IsAtTheSameHeight(known, step) &&
-         std::abs(known.filament - step.filament) <= VerifyMachine::kSlack &&
-         std::abs(known.pulled - step.pulled) <= VerifyMachine::kSlack &&
+         std::abs(known.filament - step.filament) <= kAmountSlack &&
+         std::abs(known.pulled - step.pulled) <= kAmountSlack &&
          step.length_mm <= known.length_mm + kSamePointMm;
 }
 

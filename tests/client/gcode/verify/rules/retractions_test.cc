@@ -122,6 +122,8 @@ TEST(VerifyRetractions, AreMeasuredInInchesAsInMillimetres) {
   EXPECT_EQ(Broken(a, a), "");
   // By 0.0025 mm.
   EXPECT_THAT(Broken(a, With(a, "G1 E.04", "G1 E.0399")), HasSubstr("made_of_parts"));
+  // By 0.0005 mm, which is how words in inches are rounded.
+  EXPECT_EQ(Broken(a, With(a, "G1 E.04", "G1 E.03998")), "");
 }
 
 TEST(VerifyRetractions, AreDoneBeforeTheTravelAndUndoneBehindIt) {
