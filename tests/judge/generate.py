@@ -100,8 +100,8 @@ class Writer:
         self.lines += lines
 
     def long(self, mm, digits):
-        """A length in the file's unit."""
-        return f"{mm / 25.4:.{digits + 2}f}" if self.options["inches"] else f"{mm:.{digits}f}"
+        """A length in the file's unit; in inches each with as many digits, so that equal heights stay equal."""
+        return f"{mm / 25.4:.5f}" if self.options["inches"] else f"{mm:.{digits}f}"
 
     def feed(self, mm_per_minute):
         return f"{mm_per_minute / 25.4:.3f}" if self.options["inches"] else f"{mm_per_minute}"
