@@ -60,6 +60,13 @@ bool Heats(const Step& step) {
   return step.kind == StepKind::kStay && (c.Is('M', 104) || c.Is('M', 140) || c.Is('M', 142));
 }
 
+// Slicers lead around walls, or away from them, by less.
+bool IsFarFrom(const BoundingBox& box, Point at) {
+  constexpr double kAsideMm = 10;
+  return at.x < box.low().x - kAsideMm || at.y < box.low().y - kAsideMm ||
+         at.x > box.high().x + kAsideMm || at.y > box.high().y + kAsideMm;
+}
+
 double StepMm(const Step& step, const MachineState& after) {
   const double unit = after.UnitMm();
   if (step.arc) return ArcLength(step.command, step.from, after.at, unit);
@@ -184,14 +191,18 @@ void BlockBuilder::NotePlace(const Step& step, const MachineState& after) {
 }
 
 void BlockBuilder::NoteTravel(Point to) {
-  constexpr double kAsideMm = 10;  // slicers lead around walls, or away from them, by less
   ++link_.travels_behind_fixed;
-  ++link_.travels_behind_aside;
-  if (least_.x <= most_.x && (to.x < least_.x - kAsideMm || to.y < least_.y - kAsideMm ||
-                              to.x > most_.x + kAsideMm || to.y > most_.y + kAsideMm)) {
-    link_.aside = true;
-    link_.travels_behind_aside = 0;
-  }
+  ++link_.travels;
+  if (!printed_.empty() && IsFarFrom(printed_, to)) link_.far.push_back({to, link_.travels});
+}
+
+// And back: farther than to a path that begins at `begin`.
+bool BlockBuilder::LeadsAside(Point begin) const {
+  BoundingBox around = printed_;
+  around.Add(begin);
+  return std::any_of(link_.far.begin(), link_.far.end(), [&](const FarTravel& travel) {
+    return travel.number < link_.travels && IsFarFrom(around, travel.to);
+  });
 }
 
 void BlockBuilder::TakeSlot(const Step& step) {
@@ -234,6 +245,7 @@ void BlockBuilder::NoteScript(const Step& step) {
     return;
   }
   scripted_ = file_.blocks.size();
+  link_.far.clear();
   file_.script_end = step.line.next;
 }
 
@@ -284,6 +296,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
     block.lift = std::max<Decimal>(0, link_.top - std::max(Last().last.z, block.first.z));
   }
   file_.blocks.push_back(block);
+  printed_.Add(file_.modes[block.mode].InMm(block.first));
   pending_ = 0;
 }
 
@@ -335,9 +348,10 @@ void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
       link_.flags &= static_cast<uint16_t>(~kLinkFixed);
       link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
-    // To the next object slicers lead the head aside themselves.
-    const bool aside = link_.aside && link_.travels_behind_aside > 0;
-    if (new_layer && aside && block.first.z >= last.last.z) {
+    // To the next object, which begins lower, slicers lead the head aside themselves.
+    const bool behind_script = layers_marked_ && scripted_ == file_.blocks.size();
+    if (new_layer && (behind_script || block.first.z >= last.last.z) &&
+        LeadsAside(file_.modes[block.mode].InMm(block.first))) {
       link_.flags |= kLinkAside;
       if ((link_.flags & kLinkFixed) == 0) link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
@@ -389,8 +403,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   block.length_mm += static_cast<float>(StepMm(step, after));
   const Point end = after.InMm(after.at);
   file_.ends.push_back(end);
-  least_ = {std::min(least_.x, end.x), std::min(least_.y, end.y)};
-  most_ = {std::max(most_.x, end.x), std::max(most_.y, end.y)};
+  printed_.Add(end);
   ++block.end_count;
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }

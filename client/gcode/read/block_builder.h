@@ -8,6 +8,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/model/gcode_file.h"
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 
@@ -25,13 +26,17 @@ class BlockBuilder {
  private:
   enum class Where { kHead, kBody, kTail, kLink };
 
-  static constexpr double kBeyondMm = 1e9;
-
   // A line that machines interpret differently.
   struct LineFault {
     Offset at = 0;
     const char* what = nullptr;
     size_t block = 0;  // the next one
+  };
+
+  // The travel move of a link, counted from 1, that leads to `to`.
+  struct FarTravel {
+    Point to;
+    int number = 0;
   };
 
   // What is known about the link being read.
@@ -46,8 +51,8 @@ class BlockBuilder {
     bool lost = false;             // a move that is not understood: its end is unknown
     uint32_t found = 0;            // axes that a move behind it states
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
-    bool aside = false;            // leads far beyond what was printed before
-    int travels_behind_aside = 0;  // moves in XY after the last one that does
+    int travels = 0;
+    std::vector<FarTravel> far;  // that lead far beyond what was printed before
     bool changes_tool = false;
     bool primes =
         false;  // behind a tool change, filament is pushed of which nothing was pulled back
@@ -63,6 +68,7 @@ class BlockBuilder {
   void NoteScript(const Step& step);
   void NotePlace(const Step& step, const MachineState& after);
   void NoteTravel(Point to);
+  bool LeadsAside(Point begin) const;
   void NoteInLink(const Step& step, const MachineState& before, const MachineState& after);
   bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
   void TakeTail(const Step& step, const MachineState& before, const MachineState& after);
@@ -98,8 +104,7 @@ class BlockBuilder {
   Where where_ = Where::kHead;
   uint16_t pending_ = 0;  // BlockFlags of lines after the last extruding one
   OpenLink link_;
-  Point least_{kBeyondMm, kBeyondMm};  // the corners of what is printed so far
-  Point most_{-kBeyondMm, -kBeyondMm};
+  BoundingBox printed_;  // what is printed so far
 
   bool ends_rising_ = false;  // the last segment of the last block rises
 

@@ -150,6 +150,33 @@ std::string LinesBehindScripts(const std::string& script, bool wipes) {
   return text + "M107\n; slow_down_layer_time = 0\n";
 }
 
+// What leads aside behind the purge line of the start script stays, whatever path comes first: what
+// lies beyond that line and the path is none of the slicer's travel between the two.
+TEST(RewriteGcode, WhereAScriptLeadsTheHeadAsideBeforeThePrintItStays) {
+  const std::string park = "G1 X90 Y5 F9000\n";
+  for (const std::string& script : {park, "G1 E-.5 F2100\n" + park + "G1 E.5 F2100\n"}) {
+    std::string text = LinesBehindScripts(script, /*wipes=*/false);
+    text.insert(text.find(";LAYER_CHANGE"), "G1 X0 Y-20 Z.2\nG1 X50 E5 F900\n");
+    text.insert(text.find("G1 E-.5 F2100\nG1 Z.2"), script);
+    const auto file = Read(text);
+    ASSERT_EQ(file->layers.size(), 4u);
+    FileOrder upwards = {{{0, 0, false}}};
+    for (const uint32_t begin : {1u, 6u, 11u}) {
+      upwards.push_back({});
+      for (const uint32_t place : {0u, 4u, 2u, 1u, 3u}) {
+        upwards.back().push_back({begin + place, place == 0 ? 1u : 0u, false});
+      }
+    }
+    const auto rewrite = RewriteGcode(*file, upwards, {});
+    ASSERT_TRUE(rewrite.ok());
+    EXPECT_EQ(rewrite->layers_unproven, 0) << script << rewrite->unproven;
+    EXPECT_EQ(rewrite->layers_changed, 3) << script;
+    size_t parks = 0;
+    for (size_t at = 0; (at = rewrite->text.find(park, at)) != std::string::npos; ++at) ++parks;
+    EXPECT_EQ(parks, 3u) << script;
+  }
+}
+
 // As the layer's G-code of a time-lapse does, or one that cleans the nozzle, whether or not it
 // retracts first, and waits.
 TEST(RewriteGcode, WhereAScriptLeadsTheHeadAsideOnlyItStays) {

@@ -219,22 +219,29 @@ bool Tracer::OnlyRounding() const {
                      [](const TraceMove& move) { return move.rounding; });
 }
 
-// Far beyond all that was deposited, as no slicer's own travel leads.
-bool Tracer::IsAside(Point at) const {
-  constexpr double kFarMm = 10;
-  return at.x < least_.x - kFarMm || at.x > most_.x + kFarMm || at.y < least_.y - kFarMm ||
-         at.y > most_.y + kFarMm;
+void Tracer::Widen(Point at) {
+  least_ = {std::min(least_.x, at.x), std::min(least_.y, at.y)};
+  most_ = {std::max(most_.x, at.x), std::max(most_.y, at.y)};
 }
 
-// What leads aside on the way to a layer no lower, and back, is a script like unknown lines: up to
-// there it stays as it is.
-void Tracer::FixExcursion(double z_mm) {
-  const bool sinks = z_mm < printed_mm_ - kSameHeightMm;
-  if (!link_.new_layer || sinks || link_.first || least_.x > most_.x) return;
+// Far beyond all that was deposited and where the next path begins, as no slicer's own travel
+// leads.
+bool Tracer::IsAside(Point at, Point begin) const {
+  constexpr double kFarMm = 10;
+  return at.x < std::min(least_.x, begin.x) - kFarMm ||
+         at.x > std::max(most_.x, begin.x) + kFarMm ||
+         at.y < std::min(least_.y, begin.y) - kFarMm || at.y > std::max(most_.y, begin.y) + kFarMm;
+}
+
+// What leads aside on the way to a layer no lower, or to the first one, and back, is a script like
+// unknown lines: up to there it stays as it is.
+void Tracer::FixExcursion(Point begin, double z_mm) {
+  const bool sinks = !link_.first && z_mm < printed_mm_ - kSameHeightMm;
+  if (!link_.new_layer || sinks || least_.x > most_.x) return;
   bool arrived = false;
-  for (size_t m = pending_.size(); m-- > link_.fixed;) {
+  for (size_t m = pending_.size(); m-- > link_.fixed && pending_[m].in_print;) {
     if (pending_[m].kind != MoveKind::kTravel) continue;
-    if (std::exchange(arrived, true) && IsAside(pending_[m].to)) {
+    if (std::exchange(arrived, true) && IsAside(pending_[m].to, begin)) {
       link_.scripted = true;
       link_.fixed = static_cast<uint32_t>(m + 1);
       return;
@@ -249,7 +256,8 @@ void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
                 static_cast<double>(motion.from[1]) * unit};
   path.z_mm = static_cast<double>(motion.to[2]) * unit;
   path.joined = in_path_ && pending_.empty();
-  FixExcursion(static_cast<double>(motion.from[2]) * unit);
+  FixExcursion(path.start, static_cast<double>(motion.from[2]) * unit);
+  Widen(path.start);
   link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
   chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
   pending_.clear();
@@ -305,8 +313,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.end = {static_cast<double>(motion.to[0]) * unit,
                  static_cast<double>(motion.to[1]) * unit};
   printed_mm_ = static_cast<double>(motion.to[2]) * unit;
-  least_ = {std::min(least_.x, segment.end.x), std::min(least_.y, segment.end.y)};
-  most_ = {std::max(most_.x, segment.end.x), std::max(most_.y, segment.end.y)};
+  Widen(segment.end);
   segment.line = static_cast<uint32_t>(line.number);
   if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());

@@ -46,8 +46,9 @@ class Tracer {
   void NotePlaces(double before_seconds);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
   bool OnlyRounding() const;
-  void FixExcursion(double z_mm);
-  bool IsAside(Point at) const;
+  void FixExcursion(Point begin, double z_mm);
+  void Widen(Point at);
+  bool IsAside(Point at, Point begin) const;
   PathClass ClassNow(const VerifyLine& line) const;
 
   TraceChunk chunk_;

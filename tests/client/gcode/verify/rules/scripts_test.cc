@@ -64,6 +64,31 @@ TEST(VerifyScripts, LeadAsideBetweenLayersAsTheyDid) {
   EXPECT_EQ(Broken(print(near, kTwo), print("", kOneTurned)), "");
 }
 
+// Of what lies beyond the purge line and the path none is on the slicer's way.
+TEST(VerifyScripts, LeadAsideBeforeThePrintAsTheyDid) {
+  const auto print = [](const std::string& aside, const std::string& first) {
+    return "M83\nG1 X0 Y-15 Z.2 F9000\nG1 X9 E.5 F900\n;LAYER_CHANGE\n" + aside + "G1 Z.2 F9000\n" +
+           first;
+  };
+  const std::string far = "G1 X40 Y0 F9000\n";
+  const std::string near = "G1 X15 Y-9 F9000\n";
+  const std::string a = print(far, kTwo);
+
+  EXPECT_EQ(Broken(a, print(far, kOneTurned)), "");
+  EXPECT_THAT(Broken(a, print("", kOneTurned)), HasSubstr("scripts"));
+  EXPECT_THAT(Broken(a, print("G1 X45 Y0 F9000\n", kOneTurned)), HasSubstr("scripts"));
+  EXPECT_EQ(Broken(print(near, kTwo), print("", kOneTurned)), "");
+}
+
+// The travel back to where lines begin is none, though they all end far from there.
+TEST(VerifyScripts, LeadNowhereWherePathsBegin) {
+  const auto print = [](const std::string& travel) {
+    const std::string line = ";TYPE:Internal infill\nG1 X40 Y0 E1 F1200\n";
+    return kHead + "G1 X0 Y0 F9000\n" + line + ";LAYER_CHANGE\nG1 Z.4 F9000\n" + travel + line;
+  };
+  EXPECT_EQ(Broken(print("G1 X2 Y0 F9000\nG1 X0 Y0\n"), print("G1 X0 Y0 F9000\n")), "");
+}
+
 TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
   const std::string end =
       "G1 E-1 F2100\nM107\nG1 E-2 F2400\nG1 Z3 F600\nG1 X5 Y187 F9000\nG1 Z11 F600\n"
