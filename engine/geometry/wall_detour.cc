@@ -17,7 +17,7 @@ constexpr size_t kMostVertices = 500;
 // Moves that cross walls more often get no detour: it would take the square of that number.
 constexpr size_t kMostHits = 250;
 
-// Walls in the way of a detour around another wall.
+// Walls that block a detour around another wall.
 constexpr int kMostDepth = 2;
 
 double SideOf(const WallSegment& s, Point p) {
@@ -79,8 +79,8 @@ WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wa
 
 std::vector<Point> WallDetours::Around(Point a, Point b, int64_t* tests) const {
   int64_t done = 0;
-  std::vector<Point> there = OneWay(a, b, {}, 0, done);
-  std::vector<Point> back = OneWay(b, a, {}, 0, done);
+  std::vector<Point> there = OneDetour(a, b, {}, 0, done);
+  std::vector<Point> back = OneDetour(b, a, {}, 0, done);
   if (tests != nullptr) *tests += done;
   std::reverse(back.begin(), back.end());
   if (there.empty()) return back;
@@ -140,12 +140,12 @@ std::optional<uint32_t> WallDetours::SegmentAt(uint32_t wall, Point at) const {
   return nearest;
 }
 
-std::vector<Point> WallDetours::OneWay(Point a, Point b, MoveEnds ends, int depth,
-                                       int64_t& tests) const {
+std::vector<Point> WallDetours::OneDetour(Point a, Point b, MoveEnds ends, int depth,
+                                          int64_t& tests) const {
   const std::vector<Hit> hits = HitsOf(a, b, ends);
   tests += 1 + static_cast<int64_t>(hits.size());
   if (hits.empty() || hits.size() > kMostHits) return {};
-  std::vector<Point> way = {a};
+  std::vector<Point> detour = {a};
   for (size_t i = 0; i < hits.size();) {
     const uint32_t wall = WallOf(hits[i].segment);
     size_t last = i;
@@ -170,12 +170,12 @@ std::vector<Point> WallDetours::OneWay(Point a, Point b, MoveEnds ends, int dept
         return {};
       }
     }
-    if (!Follow(first, behind, side, a, b, way)) return {};
+    if (!Follow(first, behind, side, a, b, detour)) return {};
     i = last + 1;
   }
-  way.push_back(b);
-  if (!PullTaut(way, ends, depth, tests)) return {};
-  return {way.begin() + 1, way.end() - 1};
+  detour.push_back(b);
+  if (!PullTaut(detour, ends, depth, tests)) return {};
+  return {detour.begin() + 1, detour.end() - 1};
 }
 
 // Beside the corner between two segments, on the given side.
@@ -201,10 +201,10 @@ double WallDetours::BetweenBends(uint32_t wall, const Side& side, uint32_t from,
   return side.upto_mm[end - 1] + Distance(side.bends[end - 1], side.bends[first]) + between;
 }
 
-// Appends the shorter way along a wall from one hit to another, on one side of it. False if it has
-// too many corners.
+// Appends the shorter way along a wall from one hit to another, on one side of it. False if it
+// has too many corners.
 bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
-                         std::vector<Point>& way) const {
+                         std::vector<Point>& detour) const {
   const uint32_t wall = WallOf(first.segment);
   const auto [from, to] = grid_.SegmentsOf(wall);
   const uint32_t n = to - from;
@@ -237,60 +237,60 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
   }
   if (!found[0] && !found[1]) return false;
   const bool forward = !found[0] || (found[1] && lengths_mm[1] <= lengths_mm[0]);
-  way.push_back(begin);
+  detour.push_back(begin);
   for (uint32_t i = 0; i < corners[forward]; ++i) {
-    way.push_back(beside.bends[corner(forward, i)]);
+    detour.push_back(beside.bends[corner(forward, i)]);
   }
-  way.push_back(end);
+  detour.push_back(end);
   return true;
 }
 
 // Leaves out points that are not needed. False if a stretch crosses a wall around which there is no
 // detour.
-bool WallDetours::PullTaut(std::vector<Point>& way, MoveEnds ends, int depth,
+bool WallDetours::PullTaut(std::vector<Point>& detour, MoveEnds ends, int depth,
                            int64_t& tests) const {
   const auto ends_of = [&](size_t from, size_t to) {
-    return MoveEnds{ends.a && from == 0, ends.b && to + 1 == way.size()};
+    return MoveEnds{ends.a && from == 0, ends.b && to + 1 == detour.size()};
   };
-  std::vector<Point> taut = {way.front()};
-  tests += static_cast<int64_t>(way.size());
-  for (size_t at = 0; at + 1 < way.size();) {
+  std::vector<Point> taut = {detour.front()};
+  tests += static_cast<int64_t>(detour.size());
+  for (size_t at = 0; at + 1 < detour.size();) {
     size_t next = at + 1;
-    if (grid_.Crosses(way[at], way[next], ends_of(at, next))) {
+    if (grid_.Crosses(detour[at], detour[next], ends_of(at, next))) {
       if (depth == kMostDepth) return false;
       const std::vector<Point> around =
-          OneWay(way[at], way[next], ends_of(at, next), depth + 1, tests);
+          OneDetour(detour[at], detour[next], ends_of(at, next), depth + 1, tests);
       if (around.empty()) return false;
       taut.insert(taut.end(), around.begin(), around.end());
     } else {
-      while (next + 1 < way.size() &&
-             !grid_.Crosses(way[at], way[next + 1], ends_of(at, next + 1))) {
+      while (next + 1 < detour.size() &&
+             !grid_.Crosses(detour[at], detour[next + 1], ends_of(at, next + 1))) {
         ++next;
       }
     }
-    taut.push_back(way[next]);
+    taut.push_back(detour[next]);
     at = next;
   }
   Straighten(taut, ends, tests);
-  way = std::move(taut);
+  detour = std::move(taut);
   return true;
 }
 
 // Leaves out bends that no wall requires: beyond a stretch that a wall blocks there may be a point
 // that sees past the wall, and a detour around one wall may not fit the one into which it was
 // inserted.
-void WallDetours::Straighten(std::vector<Point>& way, MoveEnds ends, int64_t& tests) const {
-  if (way.size() < 3) return;
-  std::vector<Point> straight = {way.front()};
-  for (size_t at = 1; at < way.size(); ++at) {
+void WallDetours::Straighten(std::vector<Point>& detour, MoveEnds ends, int64_t& tests) const {
+  if (detour.size() < 3) return;
+  std::vector<Point> straight = {detour.front()};
+  for (size_t at = 1; at < detour.size(); ++at) {
     for (; straight.size() > 1; straight.pop_back()) {
       ++tests;
-      const MoveEnds of_line{ends.a && straight.size() == 2, ends.b && at + 1 == way.size()};
-      if (grid_.Crosses(straight[straight.size() - 2], way[at], of_line)) break;
+      const MoveEnds of_line{ends.a && straight.size() == 2, ends.b && at + 1 == detour.size()};
+      if (grid_.Crosses(straight[straight.size() - 2], detour[at], of_line)) break;
     }
-    straight.push_back(way[at]);
+    straight.push_back(detour[at]);
   }
-  way = std::move(straight);
+  detour = std::move(straight);
 }
 
 }  // namespace traverse

@@ -4,8 +4,8 @@
 //   -----+--------+-----       -----+        +-----
 //   |    |        |    |       |    |        |    |     The detour follows the wall at a distance,
 //   |  __|________|__  |       |  __|_      _|__  |     from where the straight move first meets it
-//   | |  |        |  | |       | |  | |    | |  | |     to where it last leaves it, the shorter way
-//   | |  +--------+  | |       | |  | +----+ |  | |     round, and is then pulled taut.
+//   | |  |        |  | |       | |  | |    | |  | |     to where it last leaves it, the shorter
+//   side | |  +--------+  | |       | |  | +----+ |  | |     round, and is then pulled taut.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_WALL_DETOUR_H_
 #define TRAVERSE_ENGINE_GEOMETRY_WALL_DETOUR_H_
@@ -45,10 +45,10 @@ class WallDetours {
   uint32_t WallOf(uint32_t segment) const { return grid_.segments()[segment].wall; }
   bool IsClosed(uint32_t wall) const;
   std::vector<Hit> HitsOf(Point a, Point b, MoveEnds ends) const;
-  std::vector<Point> OneWay(Point a, Point b, MoveEnds ends, int depth, int64_t& tests) const;
+  std::vector<Point> OneDetour(Point a, Point b, MoveEnds ends, int depth, int64_t& tests) const;
   std::optional<uint32_t> SegmentAt(uint32_t wall, Point at) const;
   bool Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
-              std::vector<Point>& way) const;
+              std::vector<Point>& detour) const;
   Point Beside(uint32_t before, uint32_t behind, Point at, double side) const;
 
   // One side of the walls.
@@ -58,8 +58,8 @@ class WallDetours {
   };
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
-  bool PullTaut(std::vector<Point>& way, MoveEnds ends, int depth, int64_t& tests) const;
-  void Straighten(std::vector<Point>& way, MoveEnds ends, int64_t& tests) const;
+  bool PullTaut(std::vector<Point>& detour, MoveEnds ends, int depth, int64_t& tests) const;
+  void Straighten(std::vector<Point>& detour, MoveEnds ends, int64_t& tests) const;
 
   const WallGrid& grid_;
   const double clearance_mm_;

@@ -240,8 +240,8 @@ class Search {
   }
 
   double Inside(const Segment& run) const {
-    const Direction& way = run.reversed ? backward_ : onward_;
-    return way.Before(run.last) - way.Before(run.first);
+    const Direction& direction = run.reversed ? backward_ : onward_;
+    return direction.Before(run.last) - direction.Before(run.first);
   }
 
   // What the route costs more if the places [first, last] come as `runs`, without the links to and

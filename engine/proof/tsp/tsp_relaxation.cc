@@ -380,9 +380,9 @@ std::vector<int> TspRelaxation::IntegralPath() const {
   while (at != nodes_.finish() && static_cast<int>(path.size()) < nodes_.item_count()) {
     path.push_back(at);
     const int mate = nodes_.mate(at);
-    const std::vector<int>& ways = next[static_cast<size_t>(mate)];
-    if (ways.size() != (mate == at ? 2 : 1)) return {};
-    const int to = ways.front() == from && mate == at ? ways.back() : ways.front();
+    const std::vector<int>& targets = next[static_cast<size_t>(mate)];
+    if (targets.size() != (mate == at ? 2 : 1)) return {};
+    const int to = targets.front() == from && mate == at ? targets.back() : targets.front();
     from = mate;
     at = to;
   }
