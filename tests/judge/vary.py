@@ -154,13 +154,19 @@ def behind_marks(lines, script):
 
 
 def behind_rises(lines, script):
-    due = False
+    """Where some slicers have led the head to its path already: a script that leads it away leads it back."""
+    due, last = False, {}
     for line in lines:
         yield line
+        if MOVE.match(line):
+            last.update(re.findall(rf"([XYF]){NUMBER}", code_and_comment(line)[0]))
         due = due or bool(MARK.match(line))
         if due and re.match(r"G[01] .*Z", line):
             due = False
             yield from script
+            if any("X" in moved for moved in script) and {"X", "Y", "F"} <= last.keys():
+                yield f"G1 X{last['X']} Y{last['Y']}"
+                yield f"G1 F{last['F']}"
 
 
 def beside_pulls(lines, line):
