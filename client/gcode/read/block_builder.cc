@@ -193,7 +193,7 @@ void BlockBuilder::NotePlace(const Step& step, const MachineState& after) {
 void BlockBuilder::NoteTravel(Point to) {
   ++link_.travels_behind_fixed;
   ++link_.travels;
-  if (!printed_.empty() && IsFarFrom(printed_, to)) link_.far.push_back({to, link_.travels});
+  if (IsFarFrom(printed_, to)) link_.far.push_back({to, link_.travels});
 }
 
 // And back: farther than to a path that begins at `begin`.
@@ -241,6 +241,8 @@ void BlockBuilder::NoteScript(const Step& step) {
                       c.Is('M', 82) || c.Is('M', 83) || c.Is('M', 109) || c.Is('M', 190);
   if (step.kind == StepKind::kLayerMark) {
     layers_marked_ = true;
+    // A purge line at the edge of the bed is none of the print; scripts lead there, too.
+    printed_ = BoundingBox();
   } else if (!starts || file_.blocks.size() > kMostPurges) {
     return;
   }

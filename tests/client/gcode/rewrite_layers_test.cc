@@ -150,10 +150,11 @@ std::string LinesBehindScripts(const std::string& script, bool wipes) {
   return text + "M107\n; slow_down_layer_time = 0\n";
 }
 
-// What leads aside behind the purge line of the start script stays, whatever path comes first: what
-// lies beyond that line and the path is none of the slicer's travel between the two.
+// What leads far from the first path stays, whatever path comes first: it is none of the slicer's
+// travel to there.
 TEST(RewriteGcode, WhereAScriptLeadsTheHeadAsideBeforeThePrintItStays) {
-  const std::string park = "G1 X90 Y5 F9000\n";
+  // Scripts park where others purge, too: at the edge of the bed.
+  const std::string park = "G1 X40 Y-20 F9000\n";
   for (const std::string& script : {park, "G1 E-.5 F2100\n" + park + "G1 E.5 F2100\n"}) {
     std::string text = LinesBehindScripts(script, /*wipes=*/false);
     text.insert(text.find(";LAYER_CHANGE"), "G1 X0 Y-20 Z.2\nG1 X50 E5 F900\n");

@@ -237,7 +237,7 @@ bool Tracer::IsAside(Point at, Point begin) const {
 // unknown lines: up to there it stays as it is.
 void Tracer::FixExcursion(Point begin, double z_mm) {
   const bool sinks = !link_.first && z_mm < printed_mm_ - kSameHeightMm;
-  if (!link_.new_layer || sinks || least_.x > most_.x) return;
+  if (!link_.new_layer || sinks) return;
   bool arrived = false;
   for (size_t m = pending_.size(); m-- > link_.fixed && pending_[m].in_print;) {
     if (pending_[m].kind != MoveKind::kTravel) continue;
@@ -400,6 +400,9 @@ void Tracer::Mark() {
     link_.scripted = false;
     link_.fixed = 0;
     link_.first = true;
+    // What the start script deposits is none of the print.
+    least_ = {kBeyondMm, kBeyondMm};
+    most_ = {-kBeyondMm, -kBeyondMm};
   }
   in_print_ = true;
 }

@@ -57,7 +57,7 @@ class Tracer {
   std::vector<TraceCommand> pending_commands_;
   TraceLink link_;
   double printed_mm_ = 0;              // the height of the last deposit
-  Point least_{kBeyondMm, kBeyondMm};  // the corners of all deposits so far
+  Point least_{kBeyondMm, kBeyondMm};  // the corners of all deposits of the print so far
   Point most_{-kBeyondMm, -kBeyondMm};
   std::array<float, static_cast<size_t>(PathClass::kCount)> length_of_{};
   std::optional<PathClass> named_;

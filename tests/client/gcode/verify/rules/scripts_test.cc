@@ -64,18 +64,32 @@ TEST(VerifyScripts, LeadAsideBetweenLayersAsTheyDid) {
   EXPECT_EQ(Broken(print(near, kTwo), print("", kOneTurned)), "");
 }
 
-// Of what lies beyond the purge line and the path none is on the slicer's way.
+// Scripts park where start scripts purge: at the edge of the bed.
+TEST(VerifyScripts, LeadToThePurgeLineBetweenLayersAsTheyDid) {
+  const auto print = [](const std::string& park, const std::string& second) {
+    return "M83\nG1 X0 Y-15 Z.2 F9000\nG1 X9 E.5 F900\n;LAYER_CHANGE\nG1 Z.2 F9000\n" + kTwo +
+           ";LAYER_CHANGE\n" + park + "G1 Z.4 F9000\n" + second;
+  };
+  const std::string a = print("G1 X5 Y-15 F9000\n", kTwo);
+
+  EXPECT_EQ(Broken(a, print("G1 X5 Y-15 F9000\n", kOneTurned)), "");
+  EXPECT_THAT(Broken(a, print("", kOneTurned)), HasSubstr("scripts"));
+}
+
+// Of what lies far from the first path none is on the slicer's way to it.
 TEST(VerifyScripts, LeadAsideBeforeThePrintAsTheyDid) {
   const auto print = [](const std::string& aside, const std::string& first) {
     return "M83\nG1 X0 Y-15 Z.2 F9000\nG1 X9 E.5 F900\n;LAYER_CHANGE\n" + aside + "G1 Z.2 F9000\n" +
            first;
   };
   const std::string far = "G1 X40 Y0 F9000\n";
-  const std::string near = "G1 X15 Y-9 F9000\n";
+  const std::string near = "G1 X9 Y-9 F9000\n";
+  const std::string at_purge = "G1 X5 Y-15 F9000\n";
   const std::string a = print(far, kTwo);
 
   EXPECT_EQ(Broken(a, print(far, kOneTurned)), "");
   EXPECT_THAT(Broken(a, print("", kOneTurned)), HasSubstr("scripts"));
+  EXPECT_THAT(Broken(print(at_purge, kTwo), print("", kOneTurned)), HasSubstr("scripts"));
   EXPECT_THAT(Broken(a, print("G1 X45 Y0 F9000\n", kOneTurned)), HasSubstr("scripts"));
   EXPECT_EQ(Broken(print(near, kTwo), print("", kOneTurned)), "");
 }
