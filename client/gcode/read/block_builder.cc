@@ -290,7 +290,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
   block.object = object_;
   block.first_end = static_cast<uint32_t>(file_.ends.size());
   block.mode = ModeOf(after);
-  CloseLink(block, after.at.z);
+  CloseLink(block, after.at.z, step.retracted);
   block.link = link_.flags;
   if (link_.sets_fan) block.flags |= kBlockOwnFan;
   block.travel_mm = static_cast<float>(link_.travel_mm);
@@ -333,7 +333,7 @@ bool BlockBuilder::BeginsLayer(const Block& block, Decimal first_end_z) const {
   return block.first.z != z && !rises_to_it;
 }
 
-void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
+void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z, bool retracted) {
   const bool first = file_.blocks.empty();
   const bool new_layer = BeginsLayer(block, first_end_z);
   if (first) {
@@ -357,6 +357,9 @@ void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
       link_.flags |= kLinkAside;
       if ((link_.flags & kLinkFixed) == 0) link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
+    // It alone opens, or closes, the nozzle for what follows.
+    const bool closed = (last.flags & kBlockRetracted) != 0;
+    if (closed != retracted) link_.flags |= kLinkFixed;
     if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
     // Such moves lead to another layer, or are a script's. Those to a scarf seam lead below the
     // height of its layer.

@@ -82,7 +82,7 @@ class BlockBuilder {
   void EndBlock();
   // `block` begins here, and its first segment ends at `first_end_z`.
   bool BeginsLayer(const Block& block, Decimal first_end_z) const;
-  void CloseLink(const Block& block, Decimal first_end_z);
+  void CloseLink(const Block& block, Decimal first_end_z, bool retracted);
   void BeginLayer(const Block& block);
   void KeepLayersWithFaults();
   uint32_t CurrentState();

@@ -125,6 +125,17 @@ TEST(BlockBuilder, PathsPrintedWhileRetractedOrRisingArePinned) {
   EXPECT_TRUE(file->blocks[2].flags & kBlockPinned);
 }
 
+// The link between a path printed while retracted and one that is not is no other's to replace.
+TEST(BlockBuilder, WhatOpensOrClosesTheNozzleForAPathStays) {
+  const std::string text =
+      "M83\nG1 X1 E1\nG0 X2\nG1 X3 E1\nG10\nG0 X4\nG1 X5 E1\nG0 X6\nG1 X7 E1\nG0 X8\nG11\n"
+      "G1 X9 E1\nG0 X10\nG1 X11 E1\n";
+  const auto file = Read(text);
+  ASSERT_EQ(file->blocks.size(), 6u);
+  for (const size_t b : {1u, 3u, 5u}) EXPECT_EQ(file->blocks[b].link & kLinkFixed, 0) << b;
+  for (const size_t b : {2u, 4u}) EXPECT_NE(file->blocks[b].link & kLinkFixed, 0) << b;
+}
+
 TEST(BlockBuilder, SegmentsThatRoundToNothingBelongToTheirPath) {
   const auto file = Read(
       "M82\nG1 X1 E1\nG1 X1.04 E1\nG1 X3 E1.00001\nG0 X9\nG1 X9.04 E1.00001\n"
