@@ -123,7 +123,8 @@ class RunFinder {
         EndRun();
         continue;
       }
-      if ((file_.blocks[layer_.first_block + stretch.begin].link & kLinkHeats) != 0) EndRun();
+      const uint32_t begin = layer_.first_block + stretch.begin;
+      if ((file_.blocks[begin].link & kLinkHeats) != 0 || SetsFirst(begin)) EndRun();
       if (!run_.empty() && !LabelledAlike(run_.front(), stretch)) {
         Bar("their labels are not written alike");
         EndRun();
@@ -138,15 +139,31 @@ class RunFinder {
   bool MayStandElsewhere(const Stretch& stretch) {
     if (stretch.object == 0) return false;
     for (uint32_t path = stretch.begin; path < stretch.end; ++path) {
-      const uint16_t link = file_.blocks[layer_.first_block + path].link;
-      const bool heats = path > stretch.begin && (link & kLinkHeats) != 0;
-      if (!freedom_.rules[path].pinned && !heats) continue;
-      Bar(heats ? "a temperature changes amid one of them"
-                : "paths of one of them stay as sliced, beside commands that are not known, "
-                  "a tower or a script");
+      const uint32_t block = layer_.first_block + path;
+      const bool amid = path > stretch.begin;
+      const bool heats = amid && (file_.blocks[block].link & kLinkHeats) != 0;
+      const bool sets = amid && SetsFirst(block);
+      if (!freedom_.rules[path].pinned && !heats && !sets) continue;
+      Bar(heats  ? "a temperature changes amid one of them"
+          : sets ? "something is set for the first time amid one of them"
+                 : "paths of one of them stay as sliced, beside commands that are not known, "
+                   "a tower or a script");
       return false;
     }
     return true;
+  }
+
+  // Something is set between `block` and the one before that never was before: nothing could undo
+  // it for paths that come to stand behind it.
+  bool SetsFirst(uint32_t block) const {
+    if (block == 0 || file_.blocks[block].state_in == file_.blocks[block - 1].state_in)
+      return false;
+    const PrintState& before = file_.states[file_.blocks[block - 1].state_in];
+    const PrintState& behind = file_.states[file_.blocks[block].state_in];
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      if (before[slot] == 0 && behind[slot] != 0) return true;
+    }
+    return false;
   }
 
   bool LabelledAlike(const Stretch& a, const Stretch& b) const {

@@ -204,6 +204,20 @@ TEST(MovedObjects, DoNotPassATemperatureOrAnUnknownCommand) {
   }
 }
 
+// Nothing could undo it for an object that came to stand behind it.
+TEST(MovedObjects, DoNotPassWhatIsSetForTheFirstTime) {
+  const std::string paths = ";TYPE:External perimeter\n";
+  for (const std::string& where : {paths, std::string("EXCLUDE_OBJECT_START NAME=p1\n")}) {
+    std::string text = Text(PillarPrint(), Klipper());
+    size_t at = text.find(";Z:0.6\n");
+    for (int i = 0; i < (where == paths ? 3 : 1); ++i) at = text.find(where, at + 1);
+    text.insert(at + where.size(), "M220 S90\n");
+    const GcodeRewrite rewrite = Optimised(text);
+    EXPECT_EQ(rewrite.layers_unproven, 0) << rewrite.unproven;
+    EXPECT_LT(Share(rewrite), 0.95) << "other layers";
+  }
+}
+
 TEST(MovedObjects, StayInOrderWhereTheyTouch) {
   PillarPrint print;
   print.apart = 8.4;
