@@ -45,11 +45,11 @@ std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
 }
 
 // As in the file; but what paths state before the travel that leads to them, they state so here,
-// unless a script stands before it.
+// unless a script stands before it, or the head is led aside first.
 PrintState LinkComposer::StateOfTravel(const Link& link) const {
   PrintState state = link.travel_state;
   const uint32_t to = to_.placement().block;
-  if (to == *form_.boundary || link.fixed > 0) return state;
+  if (to == *form_.boundary || link.fixed > 0 || LeadsAside(link)) return state;
   const PrintState& of_given = file_.states[file_.blocks[*form_.boundary].state_in];
   const PrintState own = parts_.LinkTo(to)->travel_state;
   for (size_t slot = 0; slot < kSlotCount; ++slot) {

@@ -283,6 +283,13 @@ bool LeadsAside(const Link& link, size_t i) {
   return false;
 }
 
+bool LeadsAside(const Link& link) {
+  for (size_t i = 0; i < link.steps.size(); ++i) {
+    if (link.steps[i].kind == StepKind::kTravel && LeadsAside(link, i)) return true;
+  }
+  return false;
+}
+
 bool MarksObjectsOnly(const Link& link) {
   bool labels = false;
   for (const LinkStep& step : link.steps) {

@@ -117,6 +117,7 @@ bool LabelsBeforeTravel(const Link& link);
 // Step `i` is a travel move behind which the head sinks under what was printed before: it leads to
 // where there is nothing in the way, to the next object of a print one by one.
 bool LeadsAside(const Link& link, size_t i);
+bool LeadsAside(const Link& link);  // by any step
 
 // It has labels of objects, at which nothing is done, and no other marks.
 bool MarksObjectsOnly(const Link& link);
