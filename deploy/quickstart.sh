@@ -15,6 +15,6 @@ cmake --build --preset release --target traverse traverse-server
 traverse=build/release/client/traverse
 for sample in deploy/samples/clusters13.gcode deploy/samples/part2.damat; do
   echo
-  echo "== $traverse compare $sample"
-  "$traverse" compare "$sample"
+  echo "== $traverse compare $sample --layer_time_limit=700ms"
+  "$traverse" compare "$sample" --layer_time_limit=700ms
 done
