@@ -6,6 +6,7 @@ Reading is two thirds of compiling, and what a header that is included too often
 import json
 import os
 import pathlib
+import re
 import resource
 import statistics
 import subprocess
@@ -17,7 +18,7 @@ FIXED = "traverse/v1/plan.pb.cc"  # nearly all of it is protobuf's headers
 SAMPLE = 15
 
 # When README's minutes were measured.
-MEASURED = 270
+MEASURED = 230
 
 
 def seconds(command):
@@ -34,6 +35,8 @@ class BuildTime(unittest.TestCase):
         commands = json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
         commands = sorted((of for of in commands if "cmake_pch" not in of["file"]), key=lambda of: of["file"])
         fixed = next(of for of in commands if of["file"].endswith(FIXED))
+        # By itself: what it shares with others would hide what others have come to include.
+        fixed = dict(fixed, command=re.sub(r"-Xclang -include(-pch)? -Xclang \S+", "", fixed["command"]))
         sample = commands[::len(commands) // SAMPLE]
         # In turns, so that what makes the processor slower for a while does so for both.
         pairs = [(seconds(of), seconds(fixed) if not at % 3 else None) for at, of in enumerate(sample)]
