@@ -46,9 +46,8 @@ struct Row {
 
 class RowFinder {
  public:
-  RowFinder(const std::vector<const ChoiceColumn*>& columns, Policy policy, Crossings crossings,
-            int64_t fewer)
-      : columns_(columns), policy_(policy), crossings_(crossings), fewer_(fewer) {
+  RowFinder(const std::vector<const ChoiceColumn*>& columns, Crossings crossings, int64_t fewer)
+      : columns_(columns), crossings_(crossings), fewer_(fewer) {
     for (const ChoiceColumn* column : columns) given_ += column->Whole(0, 0);
   }
 
@@ -136,8 +135,7 @@ class RowFinder {
       return false;
     }
     // If primes push a little more or less than was retracted, their number is part of the print.
-    if (std::abs(chosen.extra_mm - given.extra_mm) > kSlackMm) return false;
-    return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
+    return std::abs(chosen.extra_mm - given.extra_mm) <= kSlackMm;
   }
 
   Row Find(const Prices& prices) const {
@@ -184,7 +182,6 @@ class RowFinder {
   }
 
   const std::vector<const ChoiceColumn*>& columns_;
-  const Policy policy_;
   const Crossings crossings_;
   const int64_t fewer_;
   PrintTotals given_;
@@ -203,10 +200,10 @@ const PrintTotals& ChoiceColumn::Travel(size_t before, size_t choice) const {
   return travels[before * inside.size() + choice];
 }
 
-std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
-                              Crossings crossings, int64_t fewer) {
+std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Crossings crossings,
+                              int64_t fewer) {
   assert(!columns.empty());
-  return RowFinder(columns, policy, crossings, fewer).Find();
+  return RowFinder(columns, crossings, fewer).Find();
 }
 
 }  // namespace traverse::gcode

@@ -35,14 +35,13 @@ struct ChoiceColumn {
 
 // The row of choices with the least estimated time; under Crossings::kFewer a crossing counts as
 // time, or as less of it if the row would take longer than the file. No layer, with the move to it,
-// has more moves where something is in the way, or more or longer unretracted moves across visible
-// walls than in the file, or more filament
-// pushed beyond what was retracted; under Policy::kSafe none has more travel. Except under
+// has more moves where something is in the way, more or longer unretracted moves across visible
+// walls than in the file, or more filament pushed beyond what was retracted. Except under
 // Crossings::kAny, the whole file has at least `fewer` fewer crossings of visible walls than
 // before; if no row does, the file's own orders are returned. The file has no more retractions than
 // before, unless each additional one saves 0.3 s. REQUIRES: not empty.
-std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
-                              Crossings crossings, int64_t fewer = 0);
+std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Crossings crossings,
+                              int64_t fewer = 0);
 
 }  // namespace traverse::gcode
 

@@ -130,7 +130,7 @@ class LayerChooser::Impl {
   void TakeBestRow() {
     std::vector<const ChoiceColumn*> totals;
     for (const LayerColumn& column : columns_) totals.push_back(&column.totals);
-    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
+    const std::vector<uint32_t> row = BestRow(totals, crossings_, fewer_crossings_);
     for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
   }
 

@@ -29,7 +29,6 @@ MergeLimits LimitsOf(const TravelTotals& given, const MergeRules& rules) {
   if (rules.crossings != Crossings::kAny) limits.crossings = given.crossings;
   if (rules.crossings == Crossings::kFewer) limits.crossing_seconds = kFewerCrossingSeconds;
   limits.open = given.open;
-  if (rules.policy == Policy::kSafe) limits.mm = given.mm;
   if (rules.as_many_retractions) {
     limits.retractions = given.retractions;
     limits.as_many_retractions = true;
@@ -70,17 +69,11 @@ LayerOrder InGivenOrder(LayerOrder order) {
   return order;
 }
 
-// Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls, and
-// only the travel to it whether it is too long.
-MergeLimits AnyLength(MergeLimits limits) {
-  limits.mm = std::numeric_limits<double>::infinity();
-  return limits;
-}
-
+// Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls.
 MergeLimits AnyCrossings(MergeLimits limits) {
   limits.crossings = std::numeric_limits<int64_t>::max();
   limits.crossing_seconds = std::max(limits.crossing_seconds, kSparingCrossingSeconds);
-  return AnyLength(limits);
+  return limits;
 }
 
 // One layer whose orders are merged.
@@ -95,7 +88,6 @@ class LayerMerge {
         travels_(writer, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
-        few_(estimate_, AnyLength(LimitsOf(were_, rules))),
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
     travels_.MoveObjects();
     if (!rules.freedom) return;
@@ -112,7 +104,7 @@ class LayerMerge {
     for (const LayerOrder& order : begun) {
       merged.push_back(Better(quick_, order, all, Effort::kSettle));
       if (!EndsAlike(order, given_)) {
-        merged.push_back(Better(few_, order, all, Effort::kKick));
+        merged.push_back(Better(strict_, order, all, Effort::kKick));
         continue;
       }
       LayerOrder better = Better(strict_, order, all, Effort::kSettle);
@@ -125,14 +117,13 @@ class LayerMerge {
   }
 
   LayerOrder Settle(const LayerOrder& order) const {
-    return Better(few_, order, {}, Effort::kSettle);
+    return Better(strict_, order, {}, Effort::kSettle);
   }
 
   // `order` with no more retractions than the file's own; then with fewer at a price, which a
   // search that is at its limit of crossings may come to where it cannot come within the first.
   std::vector<LayerOrder> Spare(const LayerOrder& order) const {
     MergeLimits few = LimitsOf(were_, rules_);
-    if (!EndsAlike(order, given_)) few = AnyLength(few);
     MergeLimits priced = EndsAlike(order, given_) ? few : AnyCrossings(few);
     few.retractions = were_.retractions;
     priced.retraction_seconds = kSparedRetractionSeconds;
@@ -149,7 +140,6 @@ class LayerMerge {
     turned.given = were_;
     turned.given_begin = BeginOf(given_.front());
     turned.given_end = EndOf(given_.back());
-    turned.may_grow = rules_.policy != Policy::kSafe;
     std::vector<SettledOrder> settled;
     IslandTurns::Settle settle;
     if (rules_.freedom) {
@@ -265,7 +255,6 @@ class LayerMerge {
   const TravelEstimate estimate_ = std::ref(travels_);
   const TravelTotals were_;
   const OrderMerger strict_;  // keeps to what holds for the layer
-  const OrderMerger few_;     // but for its length
   const OrderMerger quick_;   // and for its crossings
   std::optional<OrderPolisher> polisher_;
 };

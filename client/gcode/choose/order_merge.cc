@@ -119,8 +119,6 @@ double OrderMerger::Excess(const TravelTotals& totals) const {
                   static_cast<double>(totals.too_long) + static_cast<double>(totals.blocked) +
                   beyond(totals.retractions, limits_.retractions);
   if (limits_.as_many_retractions) excess += beyond(limits_.retractions, totals.retractions);
-  // A millimetre counts less than a crossing, except on long travel.
-  if (totals.mm > limits_.mm + kGrain) excess += (totals.mm - limits_.mm) / 100;
   return excess;
 }
 

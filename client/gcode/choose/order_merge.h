@@ -24,7 +24,6 @@ namespace traverse::gcode {
 
 // The most that an order may amount to.
 struct MergeLimits {
-  double mm = std::numeric_limits<double>::infinity();
   int64_t crossings = std::numeric_limits<int64_t>::max();
   int64_t open = std::numeric_limits<int64_t>::max();
   int64_t retractions = std::numeric_limits<int64_t>::max();

@@ -6,9 +6,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Rounding of sums of lengths.
-constexpr double kRowSlackMm = 1e-6;
-
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
 // A choice: 0 is the file's own order, and `turn` + 1 the others.
@@ -66,12 +63,10 @@ class RowSearch {
   void Reach(size_t layer, const std::vector<Candidate>& before, uint32_t c, Candidate& candidate,
              uint32_t& from) const {
     const TurnedLayer& of = layers_[layer];
-    const double most_mm =
-        of.may_grow ? kUnreachable : of.given.mm + of.given_travel_mm + kRowSlackMm;
     const double inside = candidate.totals.seconds +
                           crossing_seconds_ * static_cast<double>(candidate.totals.crossings);
     if (layer == 0) {
-      if (c == 0 || candidate.totals.mm <= most_mm) candidate.score = inside;
+      candidate.score = inside;
       return;
     }
     for (uint32_t b = 0; b < before.size(); ++b) {
@@ -81,8 +76,7 @@ class RowSearch {
           as_given ? of.given_travel_seconds : of.turns.clock().TravelSeconds(mm, 0);
       const double score = before[b].score + inside + mm / of.turns.clock().travel_mm_s;
       if (!(score < candidate.score)) continue;
-      if (!as_given && (candidate.totals.mm + mm > most_mm ||
-                        rests_.TooShort(layer, before[b].times, {&candidate.times, seconds}))) {
+      if (!as_given && rests_.TooShort(layer, before[b].times, {&candidate.times, seconds})) {
         continue;
       }
       candidate.score = score;

@@ -32,8 +32,6 @@ struct TurnedLayer {
   Point given_end;
   double given_travel_mm = 0;
   double given_travel_seconds = 0;
-
-  bool may_grow = true;  // a layer's travel, with the travel to it
 };
 
 // [layer] the turn to take, unset for the file's own order: the row that takes the least time if a

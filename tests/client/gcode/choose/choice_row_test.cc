@@ -25,11 +25,11 @@ ChoiceColumn Column(const std::vector<PrintTotals>& inside, size_t choices_befor
   return column;
 }
 
-std::vector<uint32_t> Best(const std::vector<ChoiceColumn>& columns, Policy policy,
+std::vector<uint32_t> Best(const std::vector<ChoiceColumn>& columns,
                            Crossings crossings = Crossings::kKeep, int64_t fewer = 0) {
   std::vector<const ChoiceColumn*> pointers;
   for (const ChoiceColumn& column : columns) pointers.push_back(&column);
-  return BestRow(pointers, policy, crossings, fewer);
+  return BestRow(pointers, crossings, fewer);
 }
 
 using Row = std::vector<uint32_t>;
@@ -42,10 +42,10 @@ TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
   };
 
   // What the second layer crosses less, the one of the others may that gains more.
-  EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1, 0}));
-  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kAny), Row({1, 1, 1}));
-  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 2), Row({0, 1, 0}));
-  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 3), Row({0, 0, 0}));
+  EXPECT_EQ(Best(columns), Row({1, 1, 0}));
+  EXPECT_EQ(Best(columns, Crossings::kAny), Row({1, 1, 1}));
+  EXPECT_EQ(Best(columns, Crossings::kKeep, 2), Row({0, 1, 0}));
+  EXPECT_EQ(Best(columns, Crossings::kKeep, 3), Row({0, 0, 0}));
 }
 
 TEST(BestRow, NoTravelLeadsIntoWhatStandsHoweverFast) {
@@ -54,7 +54,7 @@ TEST(BestRow, NoTravelLeadsIntoWhatStandsHoweverFast) {
   ChoiceColumn second = Column({Totals(10, 0), Totals(9, 0)}, 2);
   second.travels[1].blocked = 1;  // from the file's order of the first
 
-  EXPECT_EQ(Best({Column({Totals(10, 0), into}, 0), second}, Policy::kFree), Row({0, 0}));
+  EXPECT_EQ(Best({Column({Totals(10, 0), into}, 0), second}), Row({0, 0}));
 }
 
 TEST(BestRow, NoMoreIsGivenUpForCrossingsThanHasToBe) {
@@ -66,7 +66,7 @@ TEST(BestRow, NoMoreIsGivenUpForCrossingsThanHasToBe) {
         Column({Totals(10, 4), Totals(9, 2)}, 2),
     };
 
-    EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 0, 1})) << gain;
+    EXPECT_EQ(Best(columns), Row({1, 0, 1})) << gain;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(BestRow, TheFileRetractsNoMoreThoughALayerMay) {
   };
 
   for (const Crossings crossings : {Crossings::kKeep, Crossings::kFewer, Crossings::kAny}) {
-    EXPECT_EQ(Best(columns, Policy::kFree, crossings), Row({1, 1, 0}));
+    EXPECT_EQ(Best(columns, crossings), Row({1, 1, 0}));
   }
 }
 
@@ -94,10 +94,10 @@ TEST(BestRow, FewerCrossingsDoNotMakeTheFileSlower) {
       Column({Totals(10, 4), Totals(9.9, 3), Totals(10.2, 2)}, 0),
   };
 
-  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kFewer), Row({1}));
+  EXPECT_EQ(Best(columns, Crossings::kFewer), Row({1}));
   // Time that another layer saves may be spent.
   const std::vector<ChoiceColumn> more = {columns[0], Column({Totals(10, 4), Totals(9, 4)}, 3)};
-  EXPECT_EQ(Best(more, Policy::kSafe, Crossings::kFewer), Row({2, 1}));
+  EXPECT_EQ(Best(more, Crossings::kFewer), Row({2, 1}));
 }
 
 TEST(BestRow, WhatRetractsLessMustNotCrossMoreWallsForIt) {
@@ -107,15 +107,15 @@ TEST(BestRow, WhatRetractsLessMustNotCrossMoreWallsForIt) {
   };
 
   // Each of the first one's needs the second one's fewer retractions, and one crosses less instead.
-  EXPECT_EQ(Best(columns, Policy::kFree), Row({2, 1}));
-  EXPECT_EQ(Best(columns, Policy::kFree, Crossings::kAny), Row({1, 1}));
+  EXPECT_EQ(Best(columns), Row({2, 1}));
+  EXPECT_EQ(Best(columns, Crossings::kAny), Row({1, 1}));
 }
 
 TEST(BestRow, RetractionsGiveWayWhereNoRowHasFewer) {
   std::vector<ChoiceColumn> columns = {Column({Retracting(10, 4), Retracting(9, 6)}, 0)};
   columns[0].no_choice[0] = true;
 
-  EXPECT_EQ(Best(columns, Policy::kFree), Row({1}));
+  EXPECT_EQ(Best(columns), Row({1}));
 }
 
 TEST(BestRow, ARetractionMoreHasToSaveThreeTenthsOfASecond) {
@@ -124,30 +124,11 @@ TEST(BestRow, ARetractionMoreHasToSaveThreeTenthsOfASecond) {
       Column({Retracting(50, 4), Retracting(48.6, 9)}, 2),
   };
 
-  EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 0}));
+  EXPECT_EQ(Best(columns), Row({1, 0}));
 }
 
-TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheTravelToIt) {
-  std::vector<ChoiceColumn> columns = {
-      Column({Totals(10, 0, 20), Totals(9, 0, 10)}, 0),
-      Column({Totals(10, 0, 20), Totals(9, 0, 25)}, 2),
-  };
-  // From the quick end of the first layer it is not far to the second one's quick order.
-  columns[1].travels = {Totals(1, 0, 30), Totals(1, 0, 30), Totals(1, 0, 35), Totals(1, 0, 5)};
-
-  EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1}));
-  columns[1].travels[3].travel_mm = 35;
-  EXPECT_EQ(Best(columns, Policy::kSafe), Row({0, 0}));
-  EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 1}));
-}
-
-TEST(BestRow, UnderSafeALittleFurtherIsTooFar) {
-  const std::vector<ChoiceColumn> columns = {
-      Column({Totals(10, 0, 20), Totals(9, 0, 20.01)}, 0),
-  };
-
-  EXPECT_EQ(Best(columns, Policy::kSafe), Row({0}));
-  EXPECT_EQ(Best(columns, Policy::kBalanced), Row({1}));
+TEST(BestRow, ALayerMayTravelFurtherThatTakesLessTime) {
+  EXPECT_EQ(Best({Column({Totals(10, 0, 20), Totals(9, 0, 25)}, 0)}), Row({1}));
 }
 
 TEST(BestRow, WhatIsRuledOutIsNotChosen) {
@@ -157,12 +138,12 @@ TEST(BestRow, WhatIsRuledOutIsNotChosen) {
   };
 
   columns[1].no_travel[3] = true;
-  const Row one = Best(columns, Policy::kFree);
+  const Row one = Best(columns);
   columns[0].no_choice[1] = true;
   columns[1].no_choice[1] = true;
 
   EXPECT_EQ(one[0] + one[1], 1u);
-  EXPECT_EQ(Best(columns, Policy::kFree), Row({0, 0}));
+  EXPECT_EQ(Best(columns), Row({0, 0}));
 }
 
 TEST(BestRow, OpenTravelsAcrossWallsAndPushedFilamentStayAsTheyAre) {
@@ -171,10 +152,8 @@ TEST(BestRow, OpenTravelsAcrossWallsAndPushedFilamentStayAsTheyAre) {
   PrintTotals pushed = Totals(9, 0);
   pushed.extra_mm = 0.1;
 
-  for (const Policy policy : {Policy::kSafe, Policy::kFree}) {
-    EXPECT_EQ(Best({Column({Totals(10, 0), open}, 0)}, policy, Crossings::kAny), Row({0}));
-    EXPECT_EQ(Best({Column({Totals(10, 0), pushed}, 0)}, policy, Crossings::kAny), Row({0}));
-  }
+  EXPECT_EQ(Best({Column({Totals(10, 0), open}, 0)}, Crossings::kAny), Row({0}));
+  EXPECT_EQ(Best({Column({Totals(10, 0), pushed}, 0)}, Crossings::kAny), Row({0}));
 }
 
 TEST(BestRow, NoOpenTravelAcrossWallsIsLongerThanInTheFile) {
@@ -187,8 +166,7 @@ TEST(BestRow, NoOpenTravelAcrossWallsIsLongerThanInTheFile) {
   PrintTotals as_long = given;
   as_long.seconds = 9.5;
 
-  EXPECT_EQ(Best({Column({given, longer, as_long}, 0)}, Policy::kSafe), Row({2}));
-  EXPECT_EQ(Best({Column({given, longer, as_long}, 0)}, Policy::kFree), Row({2}));
+  EXPECT_EQ(Best({Column({given, longer, as_long}, 0)}), Row({2}));
 }
 
 }  // namespace

@@ -105,7 +105,6 @@ class RestedStack {
     turned.given_end = point(given.back());
     turned.given_travel_mm = layer > 0 ? 50 : 0;
     turned.given_travel_seconds = turned.given_travel_mm / 100;
-    turned.may_grow = false;
     for (size_t turn = 0; turn < turned.turns.size(); ++turn) {
       turned.begin.push_back(point(turned.turns.FirstOf(turn)));
       turned.end.push_back(point(turned.turns.LastOf(turn)));
