@@ -317,10 +317,11 @@ class Behind(Case):
     def test_a_server_that_dies_in_the_middle_leaves_a_last_line(self):
         server = self.start(Server)
         gateway = self.start(Gateway, f"--server={server.address}")
-        many = {"layers": [layer(80, number=i + 1, seed=i) for i in range(3000)]}
+        # The second layer takes all the time that there is.
+        hard = {"layers": [layer(2), layer(3000, 2, seed=5)], "options": {"strategy": {"name": "tabu"}}}
         connection = http.client.HTTPConnection("127.0.0.1", gateway.http_port, timeout=120)
         self.addCleanup(connection.close)
-        connection.request("POST", "/v1/optimize?deadline=30s", json.dumps(many), JSON)
+        connection.request("POST", "/v1/optimize?deadline=60s", json.dumps(hard), JSON)
         answer = connection.getresponse()
         answer.readline()
         server.process.send_signal(signal.SIGKILL)
