@@ -219,13 +219,13 @@ class Real(unittest.TestCase):
         self.assertEqual(raised.exception.code, grpc.StatusCode.INVALID_ARGUMENT)
         self.assertIn("layers[1].initial_route[0].contour: 9, but there are 6", str(raised.exception))
 
-    def test_ten_thousand_layers_wait_for_a_slow_reader(self):
+    def test_thousands_of_layers_wait_for_a_slow_reader(self):
         server = self.start(Server)
         taken = 0
 
         def endless():
             nonlocal taken
-            for one in layers(10_000):
+            for one in layers(3_000):
                 taken += 1
                 yield one
 
@@ -234,7 +234,7 @@ class Real(unittest.TestCase):
             next(answers)
             rest = sum(1 for _ in answers)
 
-        self.assertEqual((rest, taken), (9_999, 10_000))
+        self.assertEqual((rest, taken), (2_999, 3_000))
 
     def test_killing_one_of_three_servers_loses_no_layer(self):
         servers = [self.start(Server) for _ in range(3)]

@@ -211,7 +211,7 @@ TEST(LookAhead, IsNeverLongerThanOneLayerAfterTheOtherOnHexagonalGrids) {
 TEST(LookAhead, SavesTravelOverManyJobs) {
   double blind = 0;
   double seeing = 0;
-  for (uint64_t seed = 1; seed <= 10; ++seed) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
     const std::vector<JobLayer> layers = RandomLayers(
         seed, 12, {.shape = testing::PlanShape::kSequential, .min_paths = 4, .max_paths = 12});
     blind += Total(RunJob(layers, {.more_follows = false}));

@@ -132,7 +132,7 @@ double CostOfGroups(uint64_t seed, double long_share) {
 TEST(IteratedSearch, FindsTheOrderOfGroupsFarApartByCutsAtLongMoves) {
   double without = 0;
   double with = 0;
-  for (uint64_t seed = 1; seed <= 8; ++seed) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
     without += CostOfGroups(seed, 0);
     with += CostOfGroups(seed, 0.3);
   }
@@ -153,7 +153,7 @@ double CostRatio(PlanShape shape, const IteratedSearchOptions& options,
                  const IteratedSearchOptions& others) {
   double cost = 0;
   double others_cost = 0;
-  for (uint64_t seed = 1; seed <= 12; ++seed) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
     cost += SearchedCost(seed, shape, options);
     others_cost += SearchedCost(seed, shape, others);
   }

@@ -27,11 +27,9 @@ TEST_P(ShuffledFile, PrintsTheSame) {
   const std::string text = testing::TextOf(GetParam());
   const auto file = Read(text);
   for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
-    for (uint64_t seed = 1; seed <= 2; ++seed) {
-      const std::string shuffled = testing::Shuffled(*file, policy, seed);
-      EXPECT_EQ(VerifyGcode(text, "original", shuffled, "shuffled", OnlySamePrint()).message(), "")
-          << PolicyName(policy) << " seed " << seed;
-    }
+    const std::string shuffled = testing::Shuffled(*file, policy, 1);
+    EXPECT_EQ(VerifyGcode(text, "original", shuffled, "shuffled", OnlySamePrint()).message(), "")
+        << PolicyName(policy);
   }
 }
 
