@@ -8,6 +8,7 @@
 
 #include "client/gcode/choose/round_trip.h"
 #include "client/gcode/link/label_lines.h"
+#include "client/gcode/link/link.h"
 
 namespace traverse::gcode {
 namespace {
@@ -138,6 +139,12 @@ class RunFinder {
  private:
   bool MayStandElsewhere(const Stretch& stretch) {
     if (stretch.object == 0) return false;
+    const uint32_t first = layer_.first_block;
+    if ((stretch.begin == 0 && GoesOn(first)) ||
+        (first + stretch.end == layer_.end_block && GoesOn(layer_.end_block))) {
+      Bar("one of them goes on in another layer");
+      return false;
+    }
     for (uint32_t path = stretch.begin; path < stretch.end; ++path) {
       const uint32_t block = layer_.first_block + path;
       const bool amid = path > stretch.begin;
@@ -151,6 +158,17 @@ class RunFinder {
       return false;
     }
     return true;
+  }
+
+  // `block` is of the object before it, under the same label.
+  bool GoesOn(uint32_t block) const {
+    if (block == 0 || block >= file_.blocks.size() ||
+        file_.blocks[block].object != file_.blocks[block - 1].object) {
+      return false;
+    }
+    const std::vector<LinkStep> steps = ReadLink(file_, block).steps;
+    return std::none_of(steps.begin(), steps.end(),
+                        [](const LinkStep& step) { return step.kind == StepKind::kLabel; });
   }
 
   // Something is set between `block` and the one before that never was before: nothing could undo

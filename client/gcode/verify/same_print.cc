@@ -134,6 +134,14 @@ std::optional<VerifyBreak> DifferenceIn(BothSides& sides, size_t i, size_t end_o
   const Part part_was = sides.Was(i);
   const Part part_is = sides.Is(i);
   if (was.deposits != is.deposits) return MultisetDifference(part_was, part_is, true);
+  if (was.under != is.under && was.deposits.count > 0) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+        absl::StrFormat("%s:%d: what is printed stands under other labels than lines "
+                        "%d to %d of %s",
+                        optimised.name, is.first_line, was.first_line, was.last_line,
+                        original.name)};
+  }
   if (auto ends = CompareEnds(part_was, part_is)) return ends;
   if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
   if (was.header != is.header) return HeaderDifference(part_was, part_is);

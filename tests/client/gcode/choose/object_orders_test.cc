@@ -13,6 +13,28 @@
 namespace traverse::gcode {
 namespace {
 
+// The label of the last object of a layer holds in the next one, unless it ends first.
+TEST(ObjectOrders, OneThatGoesOnInAnotherLayerStays) {
+  for (const std::string& between : {"", ";MESH:NONMESH\n;MESH:b\n"}) {
+    std::string text = "M83\nG1 Z.2 F9000\n;MESH:a\nG1 X0 Y0\nG1 X.5 E1\n;MESH:NONMESH\nG1 Z.4\n";
+    for (const char* x : {"1", "9", "5"}) {
+      text += absl::StrFormat(";MESH:%c\nG1 X%s Y0\nG1 X%s.5 E1\n", 'a' + (x[0] - '1') / 4, x, x);
+    }
+    text += between + "G1 Z.6\nG1 X6\nG1 X5 E1\n;MESH:c\nG1 X9\nG1 X8 E1\n;MESH:NONMESH\n";
+    const auto file = ReadGcode(text, "part.gcode");
+    ASSERT_TRUE(file.ok()) << file.status();
+    LayerFreedom freedom;
+    freedom.island = {0, 1, 2};
+    freedom.rules.resize(3);
+
+    const LayerObjects found = ObjectOrders(**file).ObjectsOf((*file)->layers[1], freedom);
+
+    ASSERT_EQ(found.runs.size(), 1u);
+    EXPECT_EQ(found.runs[0].size(), between.empty() ? 2u : 3u);
+    EXPECT_EQ(found.barrier.empty(), !between.empty());
+  }
+}
+
 // A row of objects, every third of which touches the one three before it.
 TEST(ObjectOrders, ThousandsThatTouchTakeNoLongerEach) {
   const auto move = [](int objects) {

@@ -196,6 +196,20 @@ TEST(MovedObjects, StayWherePrintedTwice) {
   EXPECT_EQ(Optimised(Text(print, Klipper())).layers_changed, 0);
 }
 
+TEST(MovedObjects, LeaveNoneOfTheirPathsUnderTheLabelOfAnother) {
+  const Notation cura = Notations()[6];
+  const PillarPrint print;
+  const std::string head = "M83\n" + testing::LayerMark(.2) + "G1 Z.2 F9000\nG1 E-.8 F2100\n";
+  const std::string rest = "G1 Z.1 F9000\nG1 X141 Y57\nG1 F2400\nG1 X141 Y63 E.2\n;MESH:NONMESH\n";
+  const auto objects = [&](int first, int second) {
+    return head + ObjectOf(print, cura, first, -1) + cura.end(first) +
+           ObjectOf(print, cura, second, first) + rest;
+  };
+
+  EXPECT_EQ(Broken(objects(0, 1), objects(0, 1)), "");
+  EXPECT_THAT(Broken(objects(0, 1), objects(1, 0)), HasSubstr("other labels"));
+}
+
 TEST(MovedObjects, DoNotPassATemperatureOrAnUnknownCommand) {
   for (const std::string between : {"M104 S210\nM104 S215\n", "WIPE_NOZZLE\n", "M400\n", "T1\n"}) {
     PillarPrint print;
