@@ -45,8 +45,8 @@ enum LinkFlag : uint16_t {
   kLinkFixedFrom = 1 << 8,
   kLinkRetractsAgain = 1 << 9,  // after a prime: no example for other links
   kLinkHeats = 1 << 10,         // sets a temperature
-  // To a layer no lower: leads beyond all that was printed before, and back. A script's, up to the
-  // last travel move.
+  // To a layer no lower, or to the first one: leads beyond all that is printed so far, but for the
+  // start script's, and back. A script's, up to the last travel move.
   kLinkAside = 1 << 11,
 };
 
