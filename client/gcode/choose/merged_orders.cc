@@ -255,7 +255,7 @@ class LayerMerge {
   const TravelEstimate estimate_ = std::ref(travels_);
   const TravelTotals were_;
   const OrderMerger strict_;  // keeps to what holds for the layer
-  const OrderMerger quick_;   // and for its crossings
+  const OrderMerger quick_;   // but for its crossings
   std::optional<OrderPolisher> polisher_;
 };
 

@@ -61,10 +61,10 @@ bool Heats(const Step& step) {
 }
 
 // Slicers lead around walls, or away from them, by less.
-bool IsFarFrom(const BoundingBox& box, Point at) {
+bool ReachesFarBeyond(const BoundingBox& box, const BoundingBox& travel) {
   constexpr double kAsideMm = 10;
-  return at.x < box.low().x - kAsideMm || at.y < box.low().y - kAsideMm ||
-         at.x > box.high().x + kAsideMm || at.y > box.high().y + kAsideMm;
+  return travel.low().x < box.low().x - kAsideMm || travel.low().y < box.low().y - kAsideMm ||
+         travel.high().x > box.high().x + kAsideMm || travel.high().y > box.high().y + kAsideMm;
 }
 
 double StepMm(const Step& step, const MachineState& after) {
@@ -192,17 +192,15 @@ void BlockBuilder::NotePlace(const Step& step, const MachineState& after) {
 
 void BlockBuilder::NoteTravel(Point to) {
   ++link_.travels_behind_fixed;
-  ++link_.travels;
-  if (IsFarFrom(printed_, to)) link_.far.push_back({to, link_.travels});
+  if (link_.travel_to) link_.travelled.Add(*link_.travel_to);
+  link_.travel_to = to;
 }
 
 // And back: farther than to a path that begins at `begin`.
 bool BlockBuilder::LeadsAside(Point begin) const {
   BoundingBox around = printed_;
   around.Add(begin);
-  return std::any_of(link_.far.begin(), link_.far.end(), [&](const FarTravel& travel) {
-    return travel.number < link_.travels && IsFarFrom(around, travel.to);
-  });
+  return !link_.travelled.empty() && ReachesFarBeyond(around, link_.travelled);
 }
 
 void BlockBuilder::TakeSlot(const Step& step) {
@@ -247,7 +245,8 @@ void BlockBuilder::NoteScript(const Step& step) {
     return;
   }
   scripted_ = file_.blocks.size();
-  link_.far.clear();
+  link_.travelled = BoundingBox();
+  link_.travel_to.reset();
   file_.script_end = step.line.next;
 }
 

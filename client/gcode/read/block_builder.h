@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
@@ -33,12 +34,6 @@ class BlockBuilder {
     size_t block = 0;  // the next one
   };
 
-  // The travel move of a link, counted from 1, that leads to `to`.
-  struct FarTravel {
-    Point to;
-    int number = 0;
-  };
-
   // What is known about the link being read.
   struct OpenLink {
     uint16_t flags = 0;
@@ -48,11 +43,11 @@ class BlockBuilder {
     bool open_first_move = false;
     bool retracted = false;  // before one of its lines
     bool sets_fan = false;
-    bool lost = false;             // a move that is not understood: its end is unknown
-    uint32_t found = 0;            // axes that a move behind it states
-    int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
-    int travels = 0;
-    std::vector<FarTravel> far;  // that lead far beyond what was printed before
+    bool lost = false;               // a move that is not understood: its end is unknown
+    uint32_t found = 0;              // axes that a move behind it states
+    int travels_behind_fixed = 0;    // moves in XY after the last line that must stay
+    std::optional<Point> travel_to;  // where the last move in XY leads
+    BoundingBox travelled;           // where those before it lead
     bool changes_tool = false;
     bool primes =
         false;  // behind a tool change, filament is pushed of which nothing was pulled back

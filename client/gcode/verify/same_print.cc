@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "absl/strings/str_format.h"
 
@@ -133,40 +134,28 @@ std::optional<VerifyBreak> DifferenceIn(BothSides& sides, size_t i, size_t end_o
   const Section& is = optimised.cut.sections[i];
   const Part part_was = sides.Was(i);
   const Part part_is = sides.Is(i);
-  if (was.deposits != is.deposits) return MultisetDifference(part_was, part_is, true);
-  if (was.under != is.under && was.deposits.count > 0) {
+  const auto differ = [&](std::string_view what) {
     return VerifyBreak{
         VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-        absl::StrFormat("%s:%d: what is printed stands under other labels than lines "
-                        "%d to %d of %s",
-                        optimised.name, is.first_line, was.first_line, was.last_line,
-                        original.name)};
+        absl::StrFormat("%s:%d: %s lines %d to %d of %s", optimised.name, is.first_line, what,
+                        was.first_line, was.last_line, original.name)};
+  };
+  if (was.deposits != is.deposits) return MultisetDifference(part_was, part_is, true);
+  if (was.under != is.under && was.deposits.count > 0) {
+    return differ("what is printed stands under other labels than");
   }
   if (auto ends = CompareEnds(part_was, part_is)) return ends;
   if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
   if (was.header != is.header) return HeaderDifference(part_was, part_is);
   // Where paths change places, what is said of them does so too.
   if (was.order == is.order && was.said != is.said) {
-    return VerifyBreak{
-        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-        absl::StrFormat("%s:%d: the order of the comments differs from lines %d to %d of %s",
-                        optimised.name, is.first_line, was.first_line, was.last_line,
-                        original.name)};
+    return differ("the order of the comments differs from");
   }
   if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
-    return VerifyBreak{
-        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-        absl::StrFormat(
-            "%s:%d: lines %d to %d of a script move differently from lines %d to %d of %s",
-            optimised.name, is.first_line, is.first_line, is.last_line, was.first_line,
-            was.last_line, original.name)};
+    return differ(absl::StrFormat("lines %d to %d of a script move differently from", is.first_line,
+                                  is.last_line));
   }
-  if (is.lowest < was.lowest) {
-    return VerifyBreak{
-        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-        absl::StrFormat("%s:%d: travels lower than lines %d to %d of %s", optimised.name,
-                        is.first_line, was.first_line, was.last_line, original.name)};
-  }
+  if (is.lowest < was.lowest) return differ("travels lower than");
   return std::nullopt;
 }
 

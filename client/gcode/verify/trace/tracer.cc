@@ -219,18 +219,14 @@ bool Tracer::OnlyRounding() const {
                      [](const TraceMove& move) { return move.rounding; });
 }
 
-void Tracer::Widen(Point at) {
-  least_ = {std::min(least_.x, at.x), std::min(least_.y, at.y)};
-  most_ = {std::max(most_.x, at.x), std::max(most_.y, at.y)};
-}
-
 // Far beyond all that was deposited and where the next path begins, as no slicer's own travel
 // leads.
 bool Tracer::IsAside(Point at, Point begin) const {
   constexpr double kFarMm = 10;
-  return at.x < std::min(least_.x, begin.x) - kFarMm ||
-         at.x > std::max(most_.x, begin.x) + kFarMm ||
-         at.y < std::min(least_.y, begin.y) - kFarMm || at.y > std::max(most_.y, begin.y) + kFarMm;
+  BoundingBox box = extent_;
+  box.Add(begin);
+  return at.x < box.low().x - kFarMm || at.x > box.high().x + kFarMm ||
+         at.y < box.low().y - kFarMm || at.y > box.high().y + kFarMm;
 }
 
 // What leads aside on the way to a layer no lower, or to the first one, and back, is a script like
@@ -257,7 +253,7 @@ void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
   path.z_mm = static_cast<double>(motion.to[2]) * unit;
   path.joined = in_path_ && pending_.empty();
   FixExcursion(path.start, static_cast<double>(motion.from[2]) * unit);
-  Widen(path.start);
+  extent_.Add(path.start);
   link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
   chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
   pending_.clear();
@@ -313,7 +309,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.end = {static_cast<double>(motion.to[0]) * unit,
                  static_cast<double>(motion.to[1]) * unit};
   printed_mm_ = static_cast<double>(motion.to[2]) * unit;
-  Widen(segment.end);
+  extent_.Add(segment.end);
   segment.line = static_cast<uint32_t>(line.number);
   if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());
@@ -401,8 +397,7 @@ void Tracer::Mark() {
     link_.fixed = 0;
     link_.first = true;
     // What the start script deposits is none of the print.
-    least_ = {kBeyondMm, kBeyondMm};
-    most_ = {-kBeyondMm, -kBeyondMm};
+    extent_ = BoundingBox();
   }
   in_print_ = true;
 }

@@ -10,6 +10,7 @@
 
 #include "client/gcode/verify/trace/clock.h"
 #include "client/gcode/verify/trace/trace.h"
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 
@@ -35,7 +36,6 @@ class Tracer {
   TraceChunk TakeChunk(uint32_t end_section);
 
  private:
-  static constexpr double kBeyondMm = 1e9;
   static constexpr double kSameHeightMm = 1e-6;
 
   void TakeComment(const VerifyLine& line, uint32_t section);
@@ -47,7 +47,6 @@ class Tracer {
   void BeginPath(const Motion& motion, uint32_t section, double unit);
   bool OnlyRounding() const;
   void FixExcursion(Point begin, double z_mm);
-  void Widen(Point at);
   bool IsAside(Point at, Point begin) const;
   PathClass ClassNow(const VerifyLine& line) const;
 
@@ -56,9 +55,8 @@ class Tracer {
   std::vector<TraceMove> pending_;
   std::vector<TraceCommand> pending_commands_;
   TraceLink link_;
-  double printed_mm_ = 0;              // the height of the last deposit
-  Point least_{kBeyondMm, kBeyondMm};  // the corners of all deposits of the print so far
-  Point most_{-kBeyondMm, -kBeyondMm};
+  double printed_mm_ = 0;  // the height of the last deposit
+  BoundingBox extent_;     // of all deposits of the print so far
   std::array<float, static_cast<size_t>(PathClass::kCount)> length_of_{};
   std::optional<PathClass> named_;
   bool in_path_ = false;
