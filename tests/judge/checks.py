@@ -288,49 +288,104 @@ def distance(a, b):
     return min(to_point(p, r, s), to_point(q, r, s), to_point(r, p, q), to_point(s, p, q))
 
 
+def points_along(move, step):
+    """[(mm from its begin, (x, y))] on a straight move, with both ends."""
+    count = max(1, math.ceil(move.length / step))
+    return [(move.length * i / count, (move.x0 + (move.x1 - move.x0) * i / count,
+                                       move.y0 + (move.y1 - move.y0) * i / count)) for i in range(count + 1)]
+
+
+def beside(move, lines):
+    """(mm at its begin, mm at its end) by which the move stays within half a width of `lines`; (0, 0) where all of it
+    does."""
+    away = [mm for mm, point in points_along(move, HALF_WALL_MM)
+            if all(distance((point, point), line) >= HALF_WALL_MM for line in lines)]
+    return (away[0], move.length - away[-1]) if away else (0.0, 0.0)
+
+
 def meets(move, walls, on_wall_mm):
-    """True if the move without its ends lies upon one of `walls`: {cell: moves}. It may leave a wall, or come to
-    one, at a small angle: what ends nearer than `on_wall_mm` to a wall ends on it."""
-    x, y = (move.x1 - move.x0) / move.length, (move.y1 - move.y0) / move.length
-    middle = ((move.x0 + MOVE_END_MM * x, move.y0 + MOVE_END_MM * y),
-              (move.x1 - MOVE_END_MM * x, move.y1 - MOVE_END_MM * y))
-    near = {id(wall): wall for cx, cy in cells_of(move, CELL_MM) for i in (-1, 0, 1) for j in (-1, 0, 1)
-            for wall in walls.get((cx + i, cy + j), ())}
+    """True if the move without its ends lies upon one of `walls`: {cell: [(move, loop)]}. It may leave a loop along it, or
+    come to one so: what ends nearer than `on_wall_mm` to a loop ends on it."""
+    def without(at_begin, at_end):
+        x, y = (move.x1 - move.x0) / move.length, (move.y1 - move.y0) / move.length
+        begin, end = max(at_begin, MOVE_END_MM), max(at_end, MOVE_END_MM)
+        return ((move.x0 + begin * x, move.y0 + begin * y), (move.x1 - end * x, move.y1 - end * y))
 
-    def reach(wall):
-        near, far = sorted(distance((end, end), wall) for end in ((move.x0, move.y0), (move.x1, move.y1)))
-        return CROSSING_MM if near < on_wall_mm and far > HALF_WALL_MM else HALF_WALL_MM
+    loops = collections.defaultdict(dict)
+    for cx, cy in cells_of(move, CELL_MM):
+        for wall, loop in (found for i in (-1, 0, 1) for j in (-1, 0, 1) for found in walls.get((cx + i, cy + j), ())):
+            loops[loop][id(wall)] = ((wall.x0, wall.y0), (wall.x1, wall.y1))
+    middle, ends = without(0.0, 0.0), ((move.x0, move.y0), (move.x1, move.y1))
+    for lines in (list(of_loop.values()) for of_loop in loops.values()):
+        nearest = min(distance(middle, line) for line in lines)
+        if nearest < CROSSING_MM:
+            return True
+        if nearest >= HALF_WALL_MM:
+            continue
+        on_it = [any(distance((end, end), line) < on_wall_mm for line in lines) for end in ends]
+        rest = without(*(mm if on else 0.0 for mm, on in zip(beside(move, lines), on_it)))
+        if any(distance(rest, line) < HALF_WALL_MM for line in lines):
+            return True
+    return False
 
-    return any(distance(middle, wall) < reach(wall)
-               for wall in (((wall.x0, wall.y0), (wall.x1, wall.y1)) for wall in near.values()))
+
+class PrintedLayer:
+    """What is printed at one height, so far."""
+
+    def __init__(self, height):
+        self.height = height
+        self.part = set()  # cells
+        self.walls = {}  # {cell: [(move, loop)]}, outer ones
+        self.loop = None
+        self.end = None  # of the last outer wall
+
+    def add(self, move):
+        cells = list(cells_of(move, CELL_MM))
+        if is_of_part(move.state):
+            self.part.update(cells)
+        if not is_outer(move.state):
+            return
+        if self.end != (move.x0, move.y0):
+            self.loop = object()
+        self.end = (move.x1, move.y1)
+        for cell in cells:
+            self.walls.setdefault(cell, []).append((move, self.loop))
 
 
 def walls_and_tops(side, on_wall_mm):
     """(crossings, longest mm, mm over tops) of moves with an open nozzle upon outer walls, and over areas that nothing
-    covers later."""
+    covers later. On the way to a layer these are its own walls: it covers those below."""
     tops = {}
     for move in side.deposits():
         for cell in cells_of(move, CELL_MM):
             tops[cell] = max(tops.get(cell, -1.0), round(move.z1, 3))
-    outer, layer, height = {}, set(), None
-    crossings, longest, over_top = 0, 0.0, 0.0
-    for move in side.moves:
-        if move.deposits:
-            z = round(move.z1, 3)
-            if z != height:
-                outer, layer, height = {}, set(), z
-            for cell in cells_of(move, CELL_MM):
-                if is_of_part(move.state):
-                    layer.add(cell)
-                if is_outer(move.state):
-                    outer.setdefault(cell, []).append(move)
-        elif move.length > 3 and move.retracted < 0.02 and move.e == 0:
-            if meets(move, outer, on_wall_mm):
-                crossings += 1
-                longest = max(longest, move.length)
+    crossings, over_top = [], 0.0
+    below, layer = PrintedLayer(None), PrintedLayer(None)
+    arriving, moves = [], []
+
+    def look(moves, walls, upon):
+        nonlocal over_top
+        crossings.extend(move.length for move in moves if meets(move, walls, on_wall_mm))
+        for move in moves:
             passed = list(cells_of(move, CELL_MM))[3:-3]
-            over_top += CELL_MM * sum(1 for cell in passed if cell in layer and tops.get(cell) == height)
-    return crossings, longest, over_top
+            over_top += CELL_MM * sum(1 for cell in passed if cell in upon.part and tops.get(cell) == upon.height)
+
+    for move in side.moves:
+        if not move.deposits:
+            if move.length > 3 and move.retracted < 0.02 and move.e == 0:
+                moves.append(move)
+        elif round(move.z1, 3) == layer.height:
+            look(moves, layer.walls, layer)
+            layer.add(move)
+            moves = []
+        else:
+            look(arriving, layer.walls, below)
+            below, layer = layer, PrintedLayer(round(move.z1, 3))
+            layer.add(move)
+            arriving, moves = moves, []
+    look(arriving, layer.walls, below)
+    look(moves, layer.walls, layer)
+    return len(crossings), max(crossings, default=0.0), over_top
 
 
 def is_of_part(state):

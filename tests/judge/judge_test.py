@@ -248,6 +248,29 @@ class Checks(unittest.TestCase):
         for to, found in (("X15.5 Y10.45", False), ("X15.5 Y10.06", True), ("X15.5 Y9.99", True)):
             self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, [f"G1 {to} F9000"])), found, to)
 
+    def test_open_travel_may_leave_a_loop_along_its_corner(self):
+        corners = [(11, 10), (12, 9.86), (20, 5), (10, 0), (10, 10)]
+        loop = ["G1 X10 Y10 F9000", "G1 F1800"] + [f"G1 X{x} Y{y} E.3" for x, y in corners]
+        walls = [";TYPE:External perimeter"] + loop
+        before = HEAD + layer(0.2, walls)
+
+        for to, found in (("X24 Y11.2", False), ("X24 Y8", True)):
+            self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, [f"G1 {to} F9000"])), found, to)
+
+    def test_open_travel_to_a_layer_shows_upon_the_walls_of_that(self):
+        def print_with(travel, corners):
+            walls = [";TYPE:External perimeter"] + block(10, 0.2)
+            return HEAD + layer(0.2, walls) + layer(0.4, travel, [f"G1 X{x} Y{y} E.3" for x, y in corners])
+
+        around = [f"G1 X{x} Y{y} F9000" for x, y in ((10, 4), (25, 4), (25, 12))]
+        across = ["G1 X25 Y12 F9000"]
+        wide = [(30, 3), (30, 25), (5, 25), (5, 3), (30, 3)]
+        two = [(30, 12), (30, 25), (25, 25), (25, 12), (12, 5), (12, 25), (10, 25)]
+
+        for corners, found in ((wide, False), (two, True)):
+            before, after = print_with(around, corners), print_with(across, corners)
+            self.assertEqual("stringing" in faults(before, after), found, corners)
+
     def test_open_travel_over_a_surface_is_found_and_over_supports_is_not(self):
         for feature, found in (("Top solid infill", True), ("Support material", False)):
             lines = [f";TYPE:{feature}"]
