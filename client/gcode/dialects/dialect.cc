@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iterator>
 #include <vector>
 
@@ -15,13 +16,21 @@ namespace {
 constexpr const Dialect* kAll[] = {&kPrusa,     &kOrca,     &kSlic3r, &kIdeaMaker, &kSimplify3d,
                                    &kKisslicer, &kFirmware, &kOthers, &kCura};
 
+bool IsComment(std::string_view line) { return StartsWith(line, ";"); }
+
+// Machines take commands in any case.
+bool Begins(const Mark& mark, std::string_view line) {
+  return IsComment(mark.begins) ? StartsWith(line, mark.begins)
+                                : StartsWithInAnyCase(line, mark.begins);
+}
+
 // A command is a word of its own; comments go on as they like.
 bool Ends(std::string_view begins, std::string_view rest) {
-  return begins[0] == ';' || rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == ';';
+  return IsComment(begins) || rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == ';';
 }
 
 bool Is(const Mark& mark, std::string_view line) {
-  if (!StartsWith(line, mark.begins)) return false;
+  if (!Begins(mark, line)) return false;
   const std::string_view rest = line.substr(mark.begins.size());
   if (mark.numbered && (rest.empty() || !IsDigit(rest[0]))) return false;
   return Ends(mark.begins, rest);
@@ -32,7 +41,9 @@ using MarkIndex = std::array<std::vector<const Mark*>, 256>;
 
 size_t PlaceOf(std::string_view line) {
   const size_t at = StartsWith(line, "; ") ? 2 : 1;
-  return at < line.size() ? static_cast<unsigned char>(line[at]) : 0;
+  if (at >= line.size()) return 0;
+  const auto c = static_cast<unsigned char>(line[at]);
+  return IsComment(line) ? c : static_cast<size_t>(std::toupper(c));
 }
 
 MarkIndex IndexMarks() {

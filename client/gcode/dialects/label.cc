@@ -1,8 +1,5 @@
 #include "client/gcode/dialects/label.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "client/gcode/dialects/dialect.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/text/text.h"
@@ -11,16 +8,13 @@ namespace traverse::gcode {
 namespace {
 
 bool EqualsInAnyCase(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::toupper(static_cast<unsigned char>(x)) ==
-           std::toupper(static_cast<unsigned char>(y));
-  });
+  return a.size() == b.size() && StartsWithInAnyCase(a, b);
 }
 
 // `@OBJECT part.stl`, `@OBJECT none`; `@EXCLUDEREGION part`, `@ExcludeRegion end part`.
 Label HostLabel(std::string_view line) {
   for (const std::string_view command : {"@OBJECT", "@EXCLUDEREGION"}) {
-    if (!EqualsInAnyCase(line.substr(0, command.size()), command)) continue;
+    if (!StartsWithInAnyCase(line, command)) continue;
     const std::string_view rest = line.substr(command.size());
     if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') continue;
     const std::string_view name = TrimBlanks(rest);
@@ -40,7 +34,7 @@ Label MarlinLabel(std::string_view line) {
   const std::string_view rest = line.substr(kM486.size());
   if (!rest.empty() && IsDigit(rest[0])) return {};
   const std::string_view words = TrimBlanks(rest);
-  if (!StartsWith(words, "S")) return {LabelKind::kSays, kM486, false};
+  if (!StartsWithInAnyCase(words, "S")) return {LabelKind::kSays, kM486, false};
   const bool ends = StartsWith(TrimBlanks(words.substr(1)), "-");
   return {ends ? LabelKind::kEnds : LabelKind::kBegins, kM486, !ends};
 }
@@ -49,7 +43,7 @@ Label MarlinLabel(std::string_view line) {
 
 Label LabelOf(std::string_view line) {
   if (StartsWith(line, "@")) return HostLabel(line);
-  if (StartsWith(line, "M486")) return MarlinLabel(line);
+  if (StartsWithInAnyCase(line, "M486")) return MarlinLabel(line);
   const Mark* mark = MarkOf(line);
   if (mark == nullptr) return {};
   switch (mark->kind) {

@@ -3,12 +3,23 @@
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_
 
+#include <algorithm>
 #include <string_view>
 
 namespace traverse::gcode {
 
 inline bool StartsWith(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;
+}
+
+// Letters of ASCII.
+inline bool StartsWithInAnyCase(std::string_view text, std::string_view prefix) {
+  const auto capital = [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  };
+  return text.size() >= prefix.size() &&
+         std::equal(prefix.begin(), prefix.end(), text.begin(),
+                    [capital](char x, char y) { return capital(x) == capital(y); });
 }
 
 inline std::string_view TrimBlanks(std::string_view text) {

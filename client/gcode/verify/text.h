@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 
@@ -25,6 +26,13 @@ inline std::string_view TrimLine(std::string_view text) {
 }
 
 inline char UpperCase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
+
+// `with` is in capitals, `text` in any case.
+inline bool BeginsInAnyCase(std::string_view text, std::string_view with) {
+  return text.size() >= with.size() &&
+         std::equal(with.begin(), with.end(), text.begin(),
+                    [](char capital, char c) { return capital == UpperCase(c); });
+}
 
 // Mixes `value` into `digest`.
 inline uint64_t Mix(uint64_t digest, uint64_t value) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 
 #include "client/gcode/verify/text.h"
 
@@ -30,29 +29,27 @@ std::string_view NameIn(std::string_view parameters) {
   return name.substr(0, name.find_first_of(" \t;"));
 }
 
-// A command's number does not go on.
+// In any case. A command's number does not go on.
 bool IsCommand(std::string_view line, std::string_view command, std::string_view& rest) {
-  return Follows(line, command, rest) && (line.size() == command.size() ||
-                                          line[command.size()] < '0' || line[command.size()] > '9');
-}
-
-std::string InCapitals(std::string_view text) {
-  std::string capitals(text);
-  for (char& c : capitals) c = UpperCase(c);
-  return capitals;
+  if (!BeginsInAnyCase(line, command)) return false;
+  rest = line.substr(command.size());
+  if (!rest.empty() && rest[0] >= '0' && rest[0] <= '9') return false;
+  rest = TrimLine(rest);
+  return true;
 }
 
 // What follows `command` of a host, in any case; nothing if it is another one.
 std::optional<std::string_view> BehindHostCommand(std::string_view line, std::string_view command) {
-  if (InCapitals(line.substr(0, line.find_first_of(" \t"))) != command) return std::nullopt;
+  const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+  if (word.size() != command.size() || !BeginsInAnyCase(word, command)) return std::nullopt;
   return TrimLine(line.substr(command.size()));
 }
 
 // The object is left: the first word says so.
 bool IsNothing(std::string_view name) {
-  const std::string word = InCapitals(name.substr(0, name.find_first_of(" \t")));
+  const std::string_view word = name.substr(0, name.find_first_of(" \t"));
   for (const std::string_view none : {"", "NONE", "END", "STOP", "OFF", "DISABLE"}) {
-    if (word == none) return true;
+    if (word.size() == none.size() && BeginsInAnyCase(word, none)) return true;
   }
   return false;
 }
@@ -113,16 +110,18 @@ bool ObjectLabels::Take(std::string_view line) {
     }
     return false;
   }
-  if (Follows(line, "EXCLUDE_OBJECT_START", rest)) {
+  if (IsCommand(line, "EXCLUDE_OBJECT_START", rest)) {
     Begin(kExclude, NameIn(rest));
-  } else if (Follows(line, "EXCLUDE_OBJECT_END", rest)) {
+  } else if (IsCommand(line, "EXCLUDE_OBJECT_END", rest)) {
     End(kExclude, NameIn(rest));
   } else if (IsCommand(line, "M624", rest)) {
     Begin(kM624, rest);
   } else if (IsCommand(line, "M625", rest)) {
     End(kM624, {});
   } else if (IsCommand(line, "M486", rest)) {
-    if (Begins(rest, "S")) Switch(kM486, Begins(rest, "S-") ? std::string_view() : rest);
+    if (!BeginsInAnyCase(rest, "S")) return true;
+    const std::string_view number = TrimLine(rest.substr(1));
+    Switch(kM486, Begins(number, "-") ? std::string_view() : number);
   } else {
     return false;
   }

@@ -507,7 +507,8 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     return Fence(line, LineRole::kProgress);
   }
   if (Begins(text, "SET_DISPLAY_TEXT ")) return Fence(line, LineRole::kComment);
-  if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
+  if (BeginsInAnyCase(text, "EXCLUDE_OBJECT_START") ||
+      BeginsInAnyCase(text, "EXCLUDE_OBJECT_END")) {
     line.label = true;
     return Fence(line, LineRole::kFence);
   }

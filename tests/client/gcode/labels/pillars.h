@@ -59,6 +59,10 @@ inline std::vector<Notation> Notations() {
        none},
       {"OctoPrint", line("@OBJECT p"), [](int) { return std::string("@OBJECT none\n"); }},
       {"OctoPrint regions", line("@ExcludeRegion p"), line("@ExcludeRegion end p")},
+      {"M486 in small letters", line("m486 s"), [](int) { return std::string("m486 s-1\n"); }},
+      {"Klipper in small letters",
+       [](int n) { return absl::StrCat("exclude_object_start NAME=p", n, "\n"); },
+       [](int n) { return absl::StrCat("exclude_object_end NAME=p", n, "\n"); }},
   };
 }
 
