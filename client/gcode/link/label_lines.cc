@@ -33,6 +33,9 @@ bool Alike(const GcodeFile& file, uint32_t one, uint32_t other, bool begins) {
   bool stays = false;
   const auto mine = Notations(file, link, begins ? lines.begins : lines.ends, stays);
   const auto theirs = Notations(file, other_link, begins ? others.begins : others.ends, stays);
+  for (const LabelLines& found : {lines, others}) {
+    stays = stays || (begins ? found.apart_in_behind : found.apart_in_before);
+  }
   return !stays && mine == theirs && (!begins || !mine.empty());
 }
 
@@ -41,29 +44,40 @@ bool Alike(const GcodeFile& file, uint32_t one, uint32_t other, bool begins) {
 LabelLines LabelLinesOf(const GcodeFile& file, const Link& link) {
   LabelLines lines;
   bool begun = false;
-  std::vector<size_t> stays;  // directly before this step
-  bool at_begin = false;      // nothing but such lines stands between this step and a label
+  bool at_begin = false;       // nothing but such lines stands between this step and a label
+  std::vector<size_t> beside;  // such lines directly before this step
+  bool* apart = &lines.apart_in_before;  // in what this step stands; null: in no object
+  const auto leave = [&] {
+    for (const size_t i : beside) {
+      if (apart != nullptr && link.steps[i].kind == StepKind::kStay) *apart = true;
+    }
+    beside.clear();
+  };
   for (size_t i = 0; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
     if (kind == StepKind::kBlank || kind == StepKind::kComment || kind == StepKind::kSlot) continue;
     if (kind == StepKind::kStay || kind == StepKind::kSays) {
-      (at_begin ? lines.begins : stays).push_back(i);
+      (at_begin ? lines.begins : beside).push_back(i);
       continue;
     }
     const Label label = LabelOfStep(file, link.steps[i]);
+    if (label.kind == LabelKind::kEnds && !begun && label.named) {
+      lines.ends.insert(lines.ends.end(), beside.begin(), beside.end());
+      lines.ends.push_back(i);
+      beside.clear();
+    }
+    leave();
     at_begin = label.kind == LabelKind::kBegins;
     if (at_begin) {
       begun = true;
       lines.begins.push_back(i);
-    } else if (label.kind == LabelKind::kEnds) {
-      lines.begins.clear();
-      if (!begun && label.named) {
-        lines.ends.insert(lines.ends.end(), stays.begin(), stays.end());
-        lines.ends.push_back(i);
-      }
+      apart = &lines.apart_in_behind;
+    } else if (label.kind == LabelKind::kEnds || kind == StepKind::kLayerMark) {
+      if (label.kind == LabelKind::kEnds) lines.begins.clear();
+      apart = nullptr;
     }
-    stays.clear();
   }
+  leave();
   return lines;
 }
 

@@ -24,6 +24,10 @@ namespace traverse::gcode {
 struct LabelLines {
   std::vector<size_t> ends;    // the object before, ahead of all that begin one
   std::vector<size_t> begins;  // the object behind, after all that end one
+
+  // Something that stays stands within the object before, or behind, but not beside its label.
+  bool apart_in_before = false;
+  bool apart_in_behind = false;
 };
 
 LabelLines LabelLinesOf(const GcodeFile& file, const Link& link);
@@ -58,8 +62,8 @@ class ExchangedLabels {
 bool SaysLabelsOnly(const GcodeFile& file, uint32_t block);
 
 // What keeps the object that begins with block `one`, or ends before it, from standing where that
-// of block `other` does: the lines that begin it, or end it, are not of the same sorts, or some of
-// them stand among lines that stay.
+// of block `other` does: the lines that begin it, or end it, are not of the same sorts, some of them
+// stand among lines that stay, or such a line stands within one of the objects, apart from these.
 bool BeginsAlike(const GcodeFile& file, uint32_t one, uint32_t other);
 bool EndsAlike(const GcodeFile& file, uint32_t one, uint32_t other);
 

@@ -181,6 +181,17 @@ TEST(MovedObjects, LeaveNoWipeBehind) {
   }
 }
 
+// A picture taken amid an object stays with it, as what else is done there.
+TEST(MovedObjects, StayWhereOneHasAPictureTakenWithinIt) {
+  const std::string text = absl::StrReplaceAll(
+      Text(PillarPrint(), Klipper()),
+      {{"EXCLUDE_OBJECT_START NAME=p1\nG1 E-.8 F2100\n",
+        "EXCLUDE_OBJECT_START NAME=p1\nG1 E-.8 F2100\nTIMELAPSE_TAKE_FRAME\n"}});
+  ASSERT_THAT(text, HasSubstr("TIMELAPSE"));
+  const GcodeRewrite rewrite = Optimised(text);
+  EXPECT_EQ(rewrite.layers_unproven, 0) << rewrite.unproven;
+}
+
 TEST(MovedObjects, StayInPrintsObjectByObject) {
   PillarPrint print;
   print.one_by_one = true;
