@@ -39,10 +39,6 @@ double StopToStopSeconds(double length, double speed, double accel) {
   return TrapezoidSeconds(length, Speed(0), Speed(0), speed * speed, accel);
 }
 
-double RampedSeconds(double length, double entry2, double exit2, double speed, double accel) {
-  return TrapezoidSeconds(length, Speed(entry2), Speed(exit2), speed * speed, accel);
-}
-
 double CornerSpeed2(double cosine, double corner) {
   // 2 sin(t / 2) squared is 2 - 2 cos t.
   const double turn2 = std::max(2 - 2 * cosine, 1e-9);

@@ -29,10 +29,6 @@ namespace traverse::gcode {
 // filament; above 0).
 double StopToStopSeconds(double length, double speed, double accel);
 
-// The same for a move that is entered and left at speeds of these squares, at most `speed` each and
-// near enough to each other for `length`.
-double RampedSeconds(double length, double entry2, double exit2, double speed, double accel);
-
 // The square of the speed at which a corner is taken: `cosine` is that of the angle between the
 // directions before and behind it, `corner` the speed at a right angle.
 double CornerSpeed2(double cosine, double corner);
