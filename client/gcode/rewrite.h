@@ -60,10 +60,9 @@ struct RewriteOptions : gcode::ChoiceOptions {
 };
 
 // Writes `file` with each layer in an order made of the one in `found`, or in its own, whichever
-// makes the fastest print by the estimate. Under Policy::kSafe no layer's travel grows, neither
-// within the layer nor with the move to it, and walls are spared (layer_choice.h). Verifies the
-// text by all rules of `policy` before returning it (verify/verifier.h), and measures `after` on
-// it. What breaks a rule is ruled out, layer by layer, and the file is written again.
+// makes the fastest print by the estimate and spares walls (layer_choice.h). Verifies the text by
+// all rules of `policy` before returning it (verify/verifier.h), and measures `after` on it. What
+// breaks a rule is ruled out, layer by layer, and the file is written again.
 //
 // `found` is empty, or has an order for each layer: empty, or of paths of its layer. If one has a
 // path twice, or a plan of `policy` does not allow it, the verifier finds that and the layer stays

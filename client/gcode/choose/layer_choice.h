@@ -72,8 +72,7 @@ struct ChoiceOptions : Liberties {
 };
 
 // Chooses among the file's order and what is made of the one found (merged_orders.h), by the rules
-// of choice_row.h: the least estimated time with no more travel
-// across visible walls.
+// of choice_row.h: the least estimated time with no more travel across visible walls.
 //
 // The result does not depend on the number of threads.
 class LayerChooser {
