@@ -207,6 +207,12 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     }
     const bool of_script = step.line.begin < file.script_end;
     if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange || of_script) {
+      // Of so many lines that stay nothing matters but where they end.
+      if (link.steps.size() >= Interpreter::kMostOfLink) {
+        link.steps = {added};
+        link.departs = false;
+        up_to_travel = 0;
+      }
       link.fixed = link.steps.size();
       link.behind_fixed = {interpreter.state(), state};
       link.arrival = -1;

@@ -114,6 +114,12 @@ bool Interpreter::Next(Step& step) {
                      step.kind == StepKind::kFirmwareUnretract;
       break;
   }
+  if (step.kind == StepKind::kExtrude) {
+    lines_ = 0;
+  } else if (++lines_ == kMostOfLink) {
+    step.kind = StepKind::kUnknown;
+    lines_ = 0;
+  }
   const bool may_heat = step.kind == StepKind::kUnknown || step.kind == StepKind::kModeChange;
   if (may_heat && !WaitsForHeat(step.command)) targets_ = {};
   return true;

@@ -106,6 +106,10 @@ struct Step {
 
 class Interpreter {
  public:
+  // No slicer writes so many lines between two that deposit, and what is known of each takes
+  // memory. The last of so many is kUnknown, whatever it is: they stay as they are.
+  static constexpr int kMostOfLink = 10'000;
+
   // Executes `text` from `begin`, with the machine in `state`. `text` must outlive the interpreter.
   explicit Interpreter(std::string_view text, Offset begin = 0, const MachineState& state = {})
       : text_(text), next_(begin), deposited_(state.at), state_(state) {}
@@ -144,6 +148,7 @@ class Interpreter {
 
   std::string_view text_;
   Offset next_;
+  int lines_ = 0;               // without a deposit, up to kMostOfLink
   Offset lifts_until_ = 0;      // the end of the relative lift that was found last
   Offset condition_until_ = 0;  // the end of the condition that was found last
   bool behind_pull_ = false;    // the command before this one, but for waiting, was such a move

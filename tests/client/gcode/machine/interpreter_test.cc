@@ -233,6 +233,22 @@ TEST(Interpreter, WaitsBelongToTheRetractionsBesideThem) {
   EXPECT_EQ(LastKind("G1 E-1\nM400 U1"), StepKind::kUnknown);
 }
 
+TEST(Interpreter, KnowsNoMoreThanSoManyLinesWithoutADeposit) {
+  const auto unknown = [](const std::string& line, int lines) {
+    std::string text = "M83\n";
+    for (int i = 0; i < lines; ++i) text += line + "\n";
+    const std::vector<StepKind> kinds = Kinds(text);
+    return std::count(kinds.begin(), kinds.end(), StepKind::kUnknown);
+  };
+
+  constexpr int kMost = Interpreter::kMostOfLink;
+  for (const char* line : {"", "; remark", "G1 X5", "M117 on"}) {
+    EXPECT_EQ(unknown(line, kMost - 2), 0) << line;
+    EXPECT_EQ(unknown(line, 3 * kMost), 3) << line;
+  }
+  EXPECT_EQ(unknown("G1 X1 E1\nG1 X2 E1", kMost), 0);
+}
+
 TEST(Interpreter, WaitsFarFromBothPathsBelongToAScript) {
   const auto wait = [](const std::string& before, const std::string& behind) {
     const std::vector<StepKind> kinds = Kinds("M83\nG1 X5 E1\n" + before + "G4 P50\n" + behind);
