@@ -64,10 +64,29 @@ def sample(n):
                           for z in range(n * 60 // len(text)))
 
 
+def between_two_paths(text):
+    """Prints with `text`(i) again and again between two paths of a layer."""
+    lines = grown.layers(3).splitlines(keepends=True)
+    pulls = [i for i, line in enumerate(lines) if line.startswith("G1 E-1")]
+    place = pulls[len(pulls) // 2]
+    return lambda n: "".join(lines[:place]) + "".join(text(i) + "\n" for i in range(n)) + "".join(lines[place:])
+
+
+BETWEEN = {"moves_between": lambda i: f"G1 X{i % 97} Y{i % 89} F9000", "lifts_between": lambda i: f"G1 Z{i % 9}",
+           "pulls_between": lambda i: "G1 E-1" if i % 2 else "G1 E1", "arcs_between": lambda i: "G2 X1 Y1 I1 J1",
+           "blanks_between": lambda i: "", "remarks_between": lambda i: ";", "labels_between": lambda i: f";MESH:a{i % 7}",
+           "numbers_between": lambda i: f"M486 S{i % 5}", "layers_between": lambda i: f";LAYER:{i}",
+           "messages_between": lambda i: "M117 a", "progress_between": lambda i: f"M73 P{i % 99}",
+           "elapsed_between": lambda i: f";TIME_ELAPSED:{i}", "waits_between": lambda i: "G4 P1",
+           "heat_between": lambda i: f"M104 S{200 + i % 2}", "tools_between": lambda i: f"T{i % 2}",
+           "modes_between": lambda i: "G91" if i % 2 else "G90", "resets_between": lambda i: "G92 E0",
+           "macros_between": lambda i: "A", "odd_lines_between": lambda i: "G1 X(", "fans_between": lambda i: f"M106 S{i % 255}",
+           "hosts_between": lambda i: "M118 a", "feeds_between": lambda i: f"G1 F{i}"}
+
+
 KINDS = {made.__name__: made for made in (dense, dense_layers, short_paths, short_paths_in_layers, commented, blank_lines, sample)}
-KINDS.update({name: grown.DIMENSIONS[name] for name in (
-    "paths", "layers", "loops", "walls_and_infill", "tools", "labels", "settings", "comments", "corners", "travel_bends", "long_lines",
-    "crossing_infill", "crossing_both", "same_place", "arcs", "waits")})
+KINDS.update({name: between_two_paths(text) for name, text in BETWEEN.items()})
+KINDS.update({name: made for name, made in grown.DIMENSIONS.items() if name not in grown.SUFFIX})
 CALLS = ["/v1/gcode?policy=free", "/v1/gcode?strategy=greedy", "/v1/inspect", "/v1/verify"]
 
 

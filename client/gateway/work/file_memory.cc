@@ -21,17 +21,19 @@ constexpr int64_t kLeast = int64_t{16} << 20;
 constexpr uint64_t kShort = 256 << 10;
 constexpr size_t kPiece = 64 << 10;
 
-// Bytes for each byte of the text, and for what it is made of; the last three of the layers that
-// are under way at a time: measured (weigh.py). Rewriting holds the text twice, the plans of all
-// layers, the search's own copy of them, and the grids of some layers; verifying holds both files
-// as far as they are compared.
+// Bytes for each byte of the text, and for what it is made of; the last ones of the layers, or the
+// links, that are under way at a time: measured (weigh.py). Rewriting holds the text twice, the
+// plans of all layers, the search's own copy of them, and the grids of some layers; verifying holds
+// both files as far as they are compared.
 struct Prices {
   double byte;
   double segment;
   double path;
   double move;
   double setting;
+  double fence;
   double layer;
+  double move_under_way;
   double cell_under_way;
   double path_under_way;
   double path_in_search;  // of kMostInSearch at most in a layer: larger ones are searched less
@@ -46,7 +48,9 @@ constexpr Prices PricesOf(FileUse use) {
               .path = 1700,
               .move = 140,
               .setting = 2000,
+              .fence = 720,
               .layer = 34'000,
+              .move_under_way = 850,
               .cell_under_way = 112,
               .path_under_way = 3000,
               .path_in_search = 5000};
@@ -56,7 +60,9 @@ constexpr Prices PricesOf(FileUse use) {
               .path = 440,
               .move = 85,
               .setting = 40,
+              .fence = 40,
               .layer = 500,
+              .move_under_way = 0,
               .cell_under_way = 92,
               .path_under_way = 200,
               .path_in_search = 0};
@@ -68,7 +74,9 @@ constexpr Prices PricesOf(FileUse use) {
               .path = 0,
               .move = 600,
               .setting = 10,
+              .fence = 360,
               .layer = 0,
+              .move_under_way = 0,
               .cell_under_way = 45,
               .path_under_way = 250,
               .path_in_search = 0};
@@ -91,7 +99,9 @@ double BytesFor(const TextCount& count, FileUse use) {
   const auto of = [](double price, int64_t number) { return price * static_cast<double>(number); };
   return of(prices.byte, count.bytes()) + of(prices.segment, count.segments()) +
          of(prices.path, count.paths()) + of(prices.move, count.moves()) +
-         of(prices.setting, count.settings()) + of(prices.layer, count.layers()) +
+         of(prices.setting, count.settings()) + of(prices.fence, count.fences()) +
+         of(prices.layer, count.layers()) +
+         of(prices.move_under_way, std::min(count.moves(), layers * count.most_moves())) +
          of(prices.cell_under_way, std::min(count.cells(), layers * count.most_cells())) +
          of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths())) +
          of(prices.path_in_search,

@@ -50,6 +50,15 @@ double TakeNumber(std::string_view line, size_t& at) {
   return minus ? -value : value;
 }
 
+// Of an object or a layer.
+bool IsMark(std::string_view line) {
+  for (const std::string_view word :
+       {"object", "OBJECT", "MESH", "PRINTING", "layer", "LAYER", "TIME"}) {
+    if (line.find(word) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 // Of a line that is a command.
@@ -92,6 +101,8 @@ struct TextCount::Words {
            (letter == 'M' && (number == 106 || number == 107 || number / 100 == 2 ||
                               number / 100 == 5 || number / 100 == 9));
   }
+  // Filament that is counted anew, and messages, hold nothing in its place.
+  bool passed() const { return (Is(92) && e) || (letter == 'M' && number == 117); }
   bool moves() const { return letter == 'G' && number >= 0 && number <= 3; }
   bool arc() const { return letter == 'G' && (number == 2 || number == 3); }
   bool sideways() const { return has[0] || has[1] || arc(); }
@@ -135,10 +146,17 @@ void TextCount::EndLayer() {
 
 void TextCount::TakeLine(std::string_view line) {
   const Words words(line);
-  if (words.letter == 0) return;
+  if (words.letter == 0) {
+    fences_ += IsMark(line) ? 1 : 0;
+    return;
+  }
   if (words.moves()) return Move(words);
   in_path_ = false;
-  if (words.Sets()) ++settings_;
+  if (words.Sets()) {
+    ++settings_;
+  } else if (!words.passed()) {
+    ++fences_;
+  }
   if (words.Is(90) || words.Is(91)) relative_ = words.Is(91);
   if (words.Is(20) || words.Is(21)) unit_mm_ = words.Is(20) ? 25.4 : 1;
   for (int axis = 0; axis < 3 && words.Is(92); ++axis) {
@@ -156,7 +174,10 @@ void TextCount::Move(const Words& words) {
     at_[axis] = to;
   }
   if (!words.sideways() || !words.e) {
-    ++moves_;
+    const int64_t weight = words.arc() ? 2 : 1;
+    moves_ += weight;
+    link_moves_ += weight;
+    most_moves_ = std::max(most_moves_, link_moves_);
     // What a reader takes for one path has no travel in it, and no retraction.
     travelled_ = travelled_ || words.sideways() != words.e;
     in_path_ = false;
@@ -181,6 +202,7 @@ void TextCount::Move(const Words& words) {
     pieces = ChordsOf(radius * unit_mm_, sweep);
     length = radius * sweep * unit_mm_;
   }
+  link_moves_ = 0;
   segments_ += static_cast<int64_t>(pieces);
   constexpr double kMost = kMostCellsOfLine - 1;
   layer_cells_ += 1 + static_cast<int64_t>(length < kMost ? length : kMost);

@@ -22,8 +22,14 @@ class TextCount {
   int64_t bytes() const { return bytes_; }
   int64_t segments() const { return segments_; }  // lines that print, and chords of arcs
   int64_t paths() const { return paths_; }        // runs of them
-  int64_t moves() const { return moves_; }        // other lines that move
+  int64_t moves() const { return moves_; }        // other lines that move; arcs are two
   int64_t settings() const { return settings_; }  // lines that set the fan, accelerations and so on
+
+  // Lines that nothing passes: other commands, and the comments that name objects and layers.
+  int64_t fences() const { return fences_; }
+
+  // Moves from one line that prints to the next, at most.
+  int64_t most_moves() const { return most_moves_; }
 
   int64_t layers() const { return layers_; }
   int64_t most_paths() const { return most_paths_; }  // of a layer
@@ -49,6 +55,9 @@ class TextCount {
   int64_t paths_ = 0;
   int64_t moves_ = 0;
   int64_t settings_ = 0;
+  int64_t fences_ = 0;
+  int64_t most_moves_ = 0;
+  int64_t link_moves_ = 0;
   int64_t layers_ = 0;
   int64_t most_paths_ = 0;
   int64_t layer_paths_ = 0;

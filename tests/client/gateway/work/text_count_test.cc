@@ -39,6 +39,18 @@ TEST(TextCount, CountsWhatPrintsAndWhatMoves) {
   EXPECT_EQ(count.cells(), 11 + 11 + 32);
 }
 
+TEST(TextCount, CountsWhatStandsBetweenPaths) {
+  const std::string path = "G0 X0 Y0\nG1 X9 E1\n";
+  const std::string marks = "; printing object a\n;MESH:b\n;LAYER:7\nM486 S1\nT1\nDO_IT\nG4 P5\n";
+  const std::string none = "; remark\n\nM117 a\nG92 E0\nM106 S5\n";
+  const TextCount count = CountOf(path + marks + none + "G0 X5\nG1 Z1\nG2 X1 I1\n" + path);
+
+  EXPECT_EQ(count.fences(), 7);
+  EXPECT_EQ(count.settings(), 1);
+  EXPECT_EQ(count.moves(), 6);  // an arc is two
+  EXPECT_EQ(count.most_moves(), 5);
+}
+
 TEST(TextCount, CountsTheSameInPieces) {
   const TextCount whole = CountOf(kLayer);
   for (const size_t piece : {1u, 2u, 7u, 40u}) {
