@@ -19,7 +19,6 @@ sys.path.insert(0, str(SOURCE))
 from tests.support import short_part  # noqa: E402
 
 BUILD = pathlib.Path(os.environ["TRAVERSE_BUILD"])
-SAMPLES = SOURCE / "deploy" / "samples"
 
 # These build and test the whole project; whoever runs this test has done so.
 ELSEWHERE = ("deploy/quickstart.sh", "tests/run.sh")
@@ -44,7 +43,7 @@ class Commands(unittest.TestCase):
         (self.folder / "build").mkdir()
         (self.folder / "build/release").symlink_to(BUILD)
         (self.folder / "deploy").symlink_to(SOURCE / "deploy")
-        shutil.copy(SAMPLES / "part2.damat", self.folder / "part.damat")
+        shutil.copy(SOURCE / "tests/bench/instances/part1.damat", self.folder / "part.damat")
         short_part.write(self.folder / "part.gcode")
         with zipfile.ZipFile(self.folder / "plates.gcode.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr("[Content_Types].xml", "<Types/>")

@@ -1,4 +1,5 @@
 """What the commands make: documents, routes, pictures, reports. TRAVERSE_SERVER names the server of remote jobs."""
+import copy
 import json
 import lzma
 import os
@@ -225,10 +226,13 @@ class Routes(CommandLine):
                 self.check(PART1, self.optimize(PART1, *flags), **expected)
 
     def test_the_checker_finds_faults(self):
+        given = self.optimize(PART1)
+        part = check_routes.read_part(check_routes.read_text(PART1))
+
         def faults(change):
-            document = self.optimize(PART1)
+            document = copy.deepcopy(given)
             change(document)
-            checker = check_routes.Checker(check_routes.read_part(check_routes.read_text(PART1)))
+            checker = check_routes.Checker(part)
             checker.check(document)
             return len(checker.faults)
 
