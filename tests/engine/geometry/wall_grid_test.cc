@@ -48,7 +48,7 @@ double DistanceToLine(Point p, Point a, Point b) {
 
 // Walls and ways of every size and place, upright and level ones among them.
 TEST(WallGrid, FindsWhatLookingAtEverySegmentFinds) {
-  for (uint64_t seed = 1; seed <= 300; ++seed) {
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     Rng rng(seed);
     const double size = std::pow(10, rng.Unit() * 6);

@@ -198,7 +198,7 @@ void SetRoutes(uint64_t seed, Asked& asked) {
 }
 
 TEST(InitialRoute, IsNeverBetterThanTheAnswer) {
-  for (uint64_t seed = 1; seed <= 8; ++seed) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     Asked asked{.layers = RandomLayers(seed, 7, 9)};
     if (seed % 3 == 0) asked.cleaning = CleaningSpec{{90, 90}, 2, 0};
@@ -229,7 +229,7 @@ TEST(InitialRoute, IsNeverBetterThanTheAnswerHoweverShortTheTime) {
 TEST(InitialRoute, OfEqualLayersMayDiffer) {
   for (const Method& method :
        {Method{"auto"}, Method{"ni2opt"}, Method{"auto", {{"effort", "0"}}}}) {
-    for (uint64_t seed = 1; seed <= 6; ++seed) {
+    for (uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(absl::StrCat("seed ", seed));
       Asked asked{.method = method, .layers = {}, .threads = 1};
       Rng rng(seed);
@@ -256,7 +256,7 @@ TEST(InitialRoute, IsKeptByNone) {
 
 TEST(InitialRoute, GivesTheSameRoutesOnAnyNumberOfThreads) {
   for (const char* name : {"auto", "ni2opt", "tabu"}) {
-    for (uint64_t seed = 1; seed <= 4; ++seed) {
+    for (uint64_t seed = 1; seed <= 2; ++seed) {
       SCOPED_TRACE(absl::StrCat(name, " seed ", seed));
       Asked asked{.method = {name}, .layers = RandomLayers(seed, 8, 20)};
       SetRoutes(seed, asked);
@@ -278,7 +278,7 @@ double Iterations(const std::map<uint64_t, LayerOutcome>& answers) {
 TEST(InitialRoute, SparesMostOfTheSearch) {
   double cold = 0;
   double warm = 0;
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     Asked asked{.method = {"auto", {{"idle_speed", "130"}}}};
     JobLayer& layer = asked.layers.emplace_back();

@@ -222,7 +222,7 @@ TEST(LookAhead, SavesTravelOverManyJobs) {
 }
 
 TEST(LookAhead, RoutesDependNeitherOnThreadsNorOnWhenLayersCome) {
-  const std::vector<JobLayer> layers = RandomLayers(1, 24);
+  const std::vector<JobLayer> layers = RandomLayers(1, 14);
   for (const bool cleaning : {false, true}) {
     Options options;
     if (cleaning) options.spec.cleaning = CleaningSpec{{50, 50}, 5, 0};
@@ -235,7 +235,7 @@ TEST(LookAhead, RoutesDependNeitherOnThreadsNorOnWhenLayersCome) {
     options.pause = std::chrono::milliseconds(1);
     const auto slow = RunJob(layers, options);
 
-    ASSERT_EQ(one.size(), 24u);
+    ASSERT_EQ(one.size(), 14u);
     for (const auto& [index, outcome] : one) {
       EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
       EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;

@@ -33,7 +33,7 @@ report::JobRun RunOf(const InputJob& job, const std::string& strategy) {
   options.clear_strategy();
   options.mutable_strategy()->set_name(strategy);
   // Any routes do; among many walls the best ones take minutes.
-  options.mutable_layer_time_limit()->set_nanos(50'000'000);
+  options.mutable_layer_time_limit()->set_nanos(10'000'000);
   const auto service = EmbeddedService::Start(2);
   EXPECT_TRUE(service.ok());
   report::JobRun run;

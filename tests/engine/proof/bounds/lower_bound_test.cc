@@ -25,7 +25,7 @@ namespace {
 using testing::OwnedProblem;
 
 TEST(LowerBound, IsNeverAboveTheOptimum) {
-  for (uint64_t seed = 1; seed <= 600; ++seed) {
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 7});
     const double best = testing::BruteForce(owned.problem).cost;
@@ -59,7 +59,7 @@ TEST(LowerBound, IsNeverAboveTheOptimumOfDegenerateGeometry) {
 // Layers too large for brute force: what is proven by other means.
 TEST(LowerBound, IsNeverAboveAProvenOptimum) {
   const std::unique_ptr<Strategy> exact = *MakeStrategy("exact", {});
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const OwnedProblem owned =
         testing::RandomProblem(seed, {.shape = testing::PlanShape::kSequential,

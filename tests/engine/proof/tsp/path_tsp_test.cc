@@ -117,7 +117,7 @@ TEST(PathTspSolver, ProvesClustersFromSeveralStarts) {
   SmallTsp instance = Clusters(30);
   PathTspSolver solver(instance.tsp);
   Budget budget;
-  for (const double x : {0.0, 50.0, 100.0}) {
+  for (const double x : {0.0, 100.0}) {
     SCOPED_TRACE(x);
     for (size_t p = 0; p < instance.start.size(); ++p) {
       instance.start[p] = std::abs(instance.tsp.cost[p] - x);
@@ -138,7 +138,7 @@ TEST(PathTspSolver, ProvesClustersFromSeveralStarts) {
 
 // A node whose programme is not solved stays open, and the others are done all the same.
 TEST(PathTspSolver, GoesOnAfterANodeThatFails) {
-  const SmallTsp instance = Clusters(24);
+  const SmallTsp instance = Clusters(20);
   const double given = TspCostOf(instance, FirstPorts(instance.tsp));
   Budget budget;
   const PathTspSolver::Result best =

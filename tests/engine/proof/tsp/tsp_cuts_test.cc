@@ -98,7 +98,7 @@ TEST(ViolatedCuts, HoldForEveryPath) {
     for (const TspCut& cut : ViolatedCuts(nodes, solution, 0.01, 100, budget)) {
       ++found;
       blossoms += cut.crosses ? 1 : 0;
-      for (int path = 0; path < 200; ++path) {
+      for (int path = 0; path < 100; ++path) {
         const double value = Value(cut, nodes, RandomPath(nodes, rng));
         ASSERT_GE(value, cut.lower);
         ASSERT_LE(value, cut.upper);
