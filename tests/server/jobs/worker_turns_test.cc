@@ -293,6 +293,7 @@ TEST(WorkerTurns, TasksUnderWayAreBounded) {
   std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
   for (size_t i = 0; i < WorkerPool::kMostUnderWay + 20; ++i) {
     queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->set_due(Clock::now());  // so that none waits for the slices of those before
     queues.back()->Submit(endless.On(queues.back()));
   }
   WaitFor([&] { return endless.begun >= static_cast<int>(WorkerPool::kMostUnderWay); });
