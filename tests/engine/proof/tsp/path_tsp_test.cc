@@ -138,7 +138,7 @@ TEST(PathTspSolver, ProvesClustersFromSeveralStarts) {
 
 // A node whose programme is not solved stays open, and the others are done all the same.
 TEST(PathTspSolver, GoesOnAfterANodeThatFails) {
-  const SmallTsp instance = Clusters(20);
+  const SmallTsp instance = Clusters(24);
   const double given = TspCostOf(instance, FirstPorts(instance.tsp));
   Budget budget;
   const PathTspSolver::Result best =
