@@ -15,7 +15,7 @@ namespace {
 
 // The label of the last object of a layer holds in the next one, unless it ends first.
 TEST(ObjectOrders, OneThatGoesOnInAnotherLayerStays) {
-  for (const std::string& between : {"", ";MESH:NONMESH\n;MESH:b\n"}) {
+  for (const std::string& between : {std::string(), std::string(";MESH:NONMESH\n;MESH:b\n")}) {
     std::string text = "M83\nG1 Z.2 F9000\n;MESH:a\nG1 X0 Y0\nG1 X.5 E1\n;MESH:NONMESH\nG1 Z.4\n";
     for (const char* x : {"1", "9", "5"}) {
       text += absl::StrFormat(";MESH:%c\nG1 X%s Y0\nG1 X%s.5 E1\n", 'a' + (x[0] - '1') / 4, x, x);
