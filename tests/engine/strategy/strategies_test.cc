@@ -40,7 +40,7 @@ class EveryStrategy : public ::testing::TestWithParam<std::string> {
 };
 
 TEST_P(EveryStrategy, IsBetweenTheOptimumAndGreedyOnSmallPlans) {
-  for (uint64_t seed = 1; seed <= 150; ++seed) {
+  for (uint64_t seed = 1; seed <= 75; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const OwnedProblem owned = RandomProblem(seed, {.max_paths = 6});
     Budget budget;
@@ -67,7 +67,7 @@ TEST_P(EveryStrategy, IsBetweenTheOptimumAndGreedyOnSmallPlans) {
 constexpr auto kShort = std::chrono::milliseconds(200);
 
 TEST_P(EveryStrategy, IsValidAndNotBehindGreedyOnLargerPlans) {
-  for (uint64_t seed = 1; seed <= 12; ++seed) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const OwnedProblem owned = RandomProblem(seed, {.min_paths = 10, .max_paths = 60});
     Budget budget = Budget().Within(kShort);

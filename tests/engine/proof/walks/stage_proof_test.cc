@@ -47,7 +47,7 @@ void ExpectProves(const OwnedProblem& owned, const StageProofOptions& options) {
 }
 
 TEST(ProveByStages, WalksProveWhatBruteForceFinds) {
-  for (uint64_t seed = 1; seed <= 400; ++seed) {
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     // Little memory at first, so that all parts of the method have something to do.
     ExpectProves(RandomProblem(seed, {.shape = kShapes[seed % 5], .min_paths = 1, .max_paths = 7}),
@@ -57,7 +57,7 @@ TEST(ProveByStages, WalksProveWhatBruteForceFinds) {
 }
 
 TEST(ProveByStages, BranchAndCutProvesWhatBruteForceFinds) {
-  for (uint64_t seed = 1; seed <= 240; ++seed) {
+  for (uint64_t seed = 1; seed <= 120; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     // Plans that end with a stage of items: contours with one point, or open paths; or that are one
     // stage of contours with a choice.
