@@ -275,7 +275,7 @@ TEST(RewriteGcode, LinesOfProgressThatCanBeMadeTrueHoldNoLayer) {
 }
 
 TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
-  const LineNumbers numbers{.first = 1, .blanks = " ", .checksums = true};
+  const LineNumbers numbers{.first = 1, .blanks = " ", .blanks_behind = "", .checksums = true};
   const std::string text = WithLineNumbers(kScattered, numbers);
 
   const auto rewrite = RewriteGcode(*Read(text), {kBetterOrder}, OptionsWithVersion());
