@@ -56,7 +56,7 @@ constexpr Prices PricesOf(FileUse use) {
               .path_in_search = 5000};
     case FileUse::kInspect:
       return {.byte = 1.1,
-              .segment = 22,
+              .segment = 140,
               .path = 440,
               .move = 85,
               .setting = 40,
