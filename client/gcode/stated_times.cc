@@ -288,7 +288,7 @@ std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
   std::string out = RestateLines(text, scale);
   if (const size_t mark = FindMark(out); mark != std::string::npos) {
     size_t end = std::min(out.find('\n', mark), out.size());
-    if (end > 0 && out[end - 1] == '\r') --end;
+    while (end > mark && out[end - 1] == '\r') --end;
     out.insert(end, ", " + DescribeScale(scale));
   }
   if (StatesItsDigest(text)) RenewDigest(out);

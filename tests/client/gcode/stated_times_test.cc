@@ -69,5 +69,14 @@ TEST(StatedScale, IsReadFromTheLineThatSaysIt) {
   EXPECT_FALSE(StatedScale("G28\n; times restated x0.5\n"));
 }
 
+// Some slicers end lines with two returns.
+TEST(RestateOptimised, SaysItWithinTheLineWhateverEndsThat) {
+  const std::string line = "; optimised by Traverse 0.1.0, policy safe";
+  for (const std::string end : {"\n", "\r\n", "\r\r\n"}) {
+    EXPECT_EQ(RestateOptimised(line + end + "G28" + end, kScale),
+              line + ", " + DescribeScale(kScale) + end + "G28" + end);
+  }
+}
+
 }  // namespace
 }  // namespace traverse::gcode
