@@ -64,7 +64,7 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
     if (cut.before) tracer_.EndSection(true, false);
     if (line_.role == LineRole::kDeposit && tracer_.AtLayer() && enough()) {
       held_ = true;
-      return tracer_.TakeChunk(cutter_.open_section());
+      return tracer_.TakeChunk(cutter_.open_section(), false);
     }
     tracer_.Take(line_, machine_, cut.before ? cutter_.open_section() : section);
     if (mark) cutter_.EndScript();
@@ -73,7 +73,7 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
   }
   cutter_.Finish(machine_);
   done_ = true;
-  return tracer_.TakeChunk(cutter_.open_section());
+  return tracer_.TakeChunk(cutter_.open_section(), true);
 }
 
 TraceChunk SideReader::NextBytes(size_t bytes) {

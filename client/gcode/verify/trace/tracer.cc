@@ -402,7 +402,7 @@ void Tracer::Mark() {
   in_print_ = true;
 }
 
-TraceChunk Tracer::TakeChunk(uint32_t end_section) {
+TraceChunk Tracer::TakeChunk(uint32_t end_section, bool last_of_file) {
   TraceLink last = link_;
   last.first_move = static_cast<uint32_t>(chunk_.moves.size());
   chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
@@ -413,6 +413,7 @@ TraceChunk Tracer::TakeChunk(uint32_t end_section) {
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});
   MoveLater(end_section, taken.standstills, chunk_.standstills);
   MoveLater(end_section, taken.line_faults, chunk_.line_faults);
+  if (last_of_file) return taken;
   const auto loose =
       std::find_if(taken.progress.begin(), taken.progress.end(),
                    [this](const Progress& line) { return line.line > last_held_line_; });

@@ -32,8 +32,9 @@ class Tracer {
   bool AtLayer() const { return layer_due_; }
 
   // What has been written down since the last time; the link that follows goes into the next chunk
-  // as well.
-  TraceChunk TakeChunk(uint32_t end_section);
+  // as well, and so do lines of progress of which it is not known yet what they belong to, unless
+  // there is none.
+  TraceChunk TakeChunk(uint32_t end_section, bool last_of_file);
 
  private:
   static constexpr double kSameHeightMm = 1e-6;

@@ -21,6 +21,16 @@ TEST(VerifyProgress, KeepsItsSequence) {
   EXPECT_EQ(Broken(a, kHead + "M73 P1\nM73 P2\n" + kSquare + kZigzag), "");
 }
 
+// Behind all that a printer does, too.
+TEST(VerifyProgress, KeepsTheTimesThatTheFileEndsWith) {
+  const std::string a = kHead + kSquare + kZigzag + "; printing time = 4m 0s\n";
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "4m", "5m")), "progress");
+  EXPECT_EQ(Broken(a, With(a, "; printing time = 4m 0s\n", "")), "progress");
+  EXPECT_EQ(Broken(a, a + "; printing time = 5m 0s\n"), "progress");
+  EXPECT_EQ(Broken(a, a + "M73 P100\n"), "progress");
+}
+
 // `count` lines of 10 mm beside each other; before the second one of each pair stands "M73 P" with
 // the share that is printed then.
 std::vector<std::string> Lines(int count) {
