@@ -83,8 +83,9 @@ def feature_renamed(file, rng):
 
 
 def comment_dropped(file, rng):
-    """A comment that is not about the next path, its wipe or its size; some printer may read it."""
-    of_paths = re.compile(r";\s*(?:TYPE|FEATURE|(?:LINE_)?WIDTH|(?:LAYER_)?HEIGHT|WIPE_\w+|reset$|tool |\'|[a-z ]+$)")
+    """A comment that is not about the next path, its wipe or its size, nor ours; some printer may read it."""
+    of_paths = re.compile(r";\s*(?:optimised by Traverse|TYPE|FEATURE|(?:LINE_)?WIDTH|(?:LAYER_)?HEIGHT|WIPE_\w+|reset$|tool "
+                          r"|\'|[a-z ]+$)")
     notes = [i for i, line in enumerate(file.lines)
              if line.kind == "comment" and line.text[1:].strip() and not of_paths.match(line.text)]
     return pick(rng, notes, 1, lambda i: edited(file, {i: []}))
