@@ -68,7 +68,7 @@ bool IsProgressMessage(std::string_view message) {
 
 bool IsProgressMacro(std::string_view line) {
   constexpr std::string_view kShow = "SET_DISPLAY_TEXT";
-  return StartsWith(line, kShow) && line.size() > kShow.size() &&
+  return StartsWithInAnyCase(line, kShow) && line.size() > kShow.size() &&
          (line[kShow.size()] == ' ' || line[kShow.size()] == '\t') &&
          IsProgressMessage(line.substr(line.find('=') + 1));
 }

@@ -503,10 +503,11 @@ void VerifyMachine::Heat(int number, VerifyLine& line) {
 void VerifyMachine::DoKlipper(VerifyLine& line) {
   const std::string_view text = line.text;
   if (settings_.SetByKlipper(text)) return;
-  if (Begins(text, "SET_DISPLAY_TEXT ") && MessageTellsProgress(text)) {
+  const bool shows = BeginsInAnyCase(text, "SET_DISPLAY_TEXT ");
+  if (shows && MessageTellsProgress(text)) {
     return Fence(line, LineRole::kProgress);
   }
-  if (Begins(text, "SET_DISPLAY_TEXT ")) return Fence(line, LineRole::kComment);
+  if (shows) return Fence(line, LineRole::kComment);
   if (BeginsInAnyCase(text, "EXCLUDE_OBJECT_START") ||
       BeginsInAnyCase(text, "EXCLUDE_OBJECT_END")) {
     line.label = true;
@@ -517,7 +518,8 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
   const std::string_view name = text.substr(0, text.find_first_of(" \t;"));
   for (const std::string_view macro :
        {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO", "M622.1"}) {
-    if (name == macro) return Fence(line, LineRole::kFence);
+    const bool same = name.size() == macro.size() && BeginsInAnyCase(name, macro);
+    if (same) return Fence(line, LineRole::kFence);
   }
   // What the next tool, or filament, has in its nozzle is not known.
   if (UpperCase(text[0]) == 'T' && std::exchange(tool_, DigestOf(text)) != tool_) {

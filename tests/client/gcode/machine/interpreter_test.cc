@@ -114,11 +114,13 @@ TEST(Interpreter, WhatSaysHowFarThePrintIs) {
   for (const char* line :
        {"M117 33%", "M117 Printing 33.5 %", "m117 Layer 12/220", "M118 layer 12 of 220",
         "M117 Time Left 1h2m3s", "M118 A1 P0 action:notification Data Left 12", "M532 X33 L12",
-        "SET_DISPLAY_TEXT MSG=\"33 % done\"", ";TIME_ELAPSED:12.5", ";PRINTING_TIME: 41",
-        ";REMAINING_TIME: 60", "; layer num/total_layer_count: 3/20", "; progress: 33"}) {
+        "SET_DISPLAY_TEXT MSG=\"33 % done\"", "set_display_text MSG=3%", ";TIME_ELAPSED:12.5",
+        ";PRINTING_TIME: 41", ";REMAINING_TIME: 60", "; layer num/total_layer_count: 3/20",
+        "; progress: 33"}) {
     EXPECT_EQ(LastKind(line), StepKind::kProgress) << line;
   }
-  for (const char* line : {"M117 Hello", "M117 Object 3", "SET_DISPLAY_TEXT MSG=Hello"}) {
+  for (const char* line :
+       {"M117 Hello", "M117 Object 3", "SET_DISPLAY_TEXT MSG=Hello", "set_display_text MSG=a"}) {
     EXPECT_EQ(LastKind(line), StepKind::kSays) << line;
   }
   EXPECT_EQ(LastKind("M118 Part of the left side"), StepKind::kStay);

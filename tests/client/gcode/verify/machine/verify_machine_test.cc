@@ -87,6 +87,17 @@ TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
 }
 
 // With words it is the standby temperature of a tool, or offsets.
+// As Klipper takes them.
+TEST(VerifyMachine, MacrosMayBeInAnyCase) {
+  for (const char* macro : {"TIMELAPSE_TAKE_FRAME\n", "timelapse_take_frame\n",
+                            "Exclude_Object_Start NAME=a\n", "set_print_stats_info TOTAL=3\n"}) {
+    EXPECT_EQ(LastRole(macro), LineRole::kFence) << macro;
+  }
+  EXPECT_EQ(LastRole("set_display_text MSG=Hello\n"), LineRole::kComment);
+  EXPECT_EQ(LastRole("set_display_text MSG=33%\n"), LineRole::kProgress);
+  EXPECT_EQ(LastRole("timelapse_take_frames\n"), LineRole::kFixed);
+}
+
 TEST(VerifyMachine, G10RetractsWhereItHasNoWords) {
   EXPECT_TRUE(IsRetractedAfter("M83\nG10\n"));
   EXPECT_FALSE(IsRetractedAfter("M83\nG10\nG11\n"));
