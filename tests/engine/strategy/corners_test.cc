@@ -31,7 +31,7 @@ using namespace traverse::testing;  // NOLINT
 constexpr double kRounding = 1e-9;
 
 // A search that goes round in circles ends here; one that is merely long does so as well.
-constexpr auto kShort = std::chrono::milliseconds(20);
+constexpr auto kShort = std::chrono::milliseconds(40);
 
 // The range of the API: server/translate/field_ranges.cc.
 std::vector<CostSpec> CornerCosts() {
