@@ -118,6 +118,13 @@ bool StaysWithTravel(const LinkStep& step) {
          step.kind == StepKind::kSetE;
 }
 
+// The first `steps` of `link` stay, and leave `behind`.
+void Keep(size_t steps, const PartStart& behind, Link& link) {
+  link.fixed = steps;
+  link.behind_fixed = behind;
+  link.arrival = -1;
+}
+
 }  // namespace
 
 std::optional<Link> WithWipeOf(Link form, const Link& own) {
@@ -189,9 +196,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     }
     const bool travels_on = aside && added.kind == StepKind::kTravel;
     if (travels_on && up_to_travel > link.fixed) {
-      link.fixed = up_to_travel;
-      link.behind_fixed = behind_travel;
-      link.arrival = -1;
+      Keep(up_to_travel, behind_travel, link);
     }
     // If CuraEngine primes before the last stretch of the travel, the travel proper ends there.
     const bool behind_prime = link.retracts() && !step.retracted;
@@ -213,9 +218,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
         link.departs = false;
         up_to_travel = 0;
       }
-      link.fixed = link.steps.size();
-      link.behind_fixed = {interpreter.state(), state};
-      link.arrival = -1;
+      Keep(link.steps.size(), {interpreter.state(), state}, link);
     }
   }
   NoteLift(link);

@@ -1,6 +1,5 @@
 #include "client/gcode/verify/stated_digest.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -15,8 +14,7 @@ bool HasRightMd5(std::string_view text) {
   if (!Begins(text, kBefore) || end == std::string_view::npos) return false;
   const std::string_view stated = TrimLine(text.substr(kBefore.size(), end - kBefore.size()));
   const std::string is = Md5Hex(text.substr(end + 1));
-  return !is.empty() && std::equal(stated.begin(), stated.end(), is.begin(), is.end(),
-                                   [](char one, char other) { return UpperCase(one) == other; });
+  return !is.empty() && EqualsInAnyCase(stated, is);
 }
 
 }  // namespace traverse::gcode

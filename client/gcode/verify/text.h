@@ -34,6 +34,10 @@ inline bool BeginsInAnyCase(std::string_view text, std::string_view with) {
                     [](char capital, char c) { return capital == UpperCase(c); });
 }
 
+inline bool EqualsInAnyCase(std::string_view text, std::string_view capitals) {
+  return text.size() == capitals.size() && BeginsInAnyCase(text, capitals);
+}
+
 // Mixes `value` into `digest`.
 inline uint64_t Mix(uint64_t digest, uint64_t value) {
   uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);

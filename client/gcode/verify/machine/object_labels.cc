@@ -41,7 +41,7 @@ bool IsCommand(std::string_view line, std::string_view command, std::string_view
 // What follows `command` of a host, in any case; nothing if it is another one.
 std::optional<std::string_view> BehindHostCommand(std::string_view line, std::string_view command) {
   const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-  if (word.size() != command.size() || !BeginsInAnyCase(word, command)) return std::nullopt;
+  if (!EqualsInAnyCase(word, command)) return std::nullopt;
   return TrimLine(line.substr(command.size()));
 }
 
@@ -49,7 +49,7 @@ std::optional<std::string_view> BehindHostCommand(std::string_view line, std::st
 bool IsNothing(std::string_view name) {
   const std::string_view word = name.substr(0, name.find_first_of(" \t"));
   for (const std::string_view none : {"", "NONE", "END", "STOP", "OFF", "DISABLE"}) {
-    if (word.size() == none.size() && BeginsInAnyCase(word, none)) return true;
+    if (EqualsInAnyCase(word, none)) return true;
   }
   return false;
 }

@@ -81,11 +81,11 @@ bool MessageTellsProgress(std::string_view line) {
 
 double PercentTold(std::string_view line) {
   if (line[0] == ';') return -1;
-  if (Begins(line, "M73") || Begins(line, "m73")) {
+  if (BeginsInAnyCase(line, "M73")) {
     const CommandWords words(WordsOf(line));
     return static_cast<double>(words.ValueOr('P', words.ValueOr('Q', -1'000'000))) * kPerMicro;
   }
-  if (Begins(line, "M532") || Begins(line, "m532")) {
+  if (BeginsInAnyCase(line, "M532")) {
     const CommandWords words(WordsOf(line));
     return static_cast<double>(words.ValueOr('X', -1'000'000)) * kPerMicro;
   }

@@ -518,8 +518,7 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
   const std::string_view name = text.substr(0, text.find_first_of(" \t;"));
   for (const std::string_view macro :
        {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO", "M622.1"}) {
-    const bool same = name.size() == macro.size() && BeginsInAnyCase(name, macro);
-    if (same) return Fence(line, LineRole::kFence);
+    if (EqualsInAnyCase(name, macro)) return Fence(line, LineRole::kFence);
   }
   // What the next tool, or filament, has in its nozzle is not known.
   if (UpperCase(text[0]) == 'T' && std::exchange(tool_, DigestOf(text)) != tool_) {
