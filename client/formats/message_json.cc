@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -19,6 +18,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "client/files/json.h"
 
 namespace traverse {
 namespace {
@@ -27,9 +27,6 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
-
-// One value of JSON that is neither object nor list nor null.
-using Value = std::variant<bool, int64_t, uint64_t, double, std::string>;
 
 constexpr size_t kMostShown = 60;
 
@@ -40,7 +37,7 @@ std::string Shown(const std::string& text) {
   return absl::StrCat("\"", out, "\"");
 }
 
-std::string Shown(const Value& value) {
+std::string Shown(const JsonScalar& value) {
   return std::visit(
       [](const auto& of_type) -> std::string {
         using T = std::decay_t<decltype(of_type)>;
@@ -55,7 +52,7 @@ std::string Shown(const Value& value) {
       value);
 }
 
-std::optional<double> ToDouble(const Value& value) {
+std::optional<double> ToDouble(const JsonScalar& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* number = std::get_if<int64_t>(&value)) return static_cast<double>(*number);
   if (const auto* number = std::get_if<uint64_t>(&value)) return static_cast<double>(*number);
@@ -67,7 +64,7 @@ std::optional<double> ToDouble(const Value& value) {
 
 // A whole number of type T, if `value` is one.
 template <typename T>
-std::optional<T> ToWhole(const Value& value) {
+std::optional<T> ToWhole(const JsonScalar& value) {
   if (const auto* number = std::get_if<int64_t>(&value)) {
     if (std::in_range<T>(*number)) return static_cast<T>(*number);
   } else if (const auto* number = std::get_if<uint64_t>(&value)) {
@@ -86,7 +83,7 @@ std::optional<T> ToWhole(const Value& value) {
   return std::nullopt;
 }
 
-absl::Status Not(const Value& value, const char* wanted) {
+absl::Status Not(const JsonScalar& value, const char* wanted) {
   return absl::InvalidArgumentError(absl::StrCat(Shown(value), " is not ", wanted));
 }
 
@@ -101,7 +98,7 @@ class FieldSetter {
   FieldSetter(Message& message, const FieldDescriptor& field)
       : message_(message), field_(field), reflection_(*message.GetReflection()) {}
 
-  absl::Status Set(const Value& value) {
+  absl::Status Set(const JsonScalar& value) {
     switch (field_.cpp_type()) {
       case FieldDescriptor::CPPTYPE_DOUBLE:
         return SetDouble(value);
@@ -138,7 +135,7 @@ class FieldSetter {
   }
 
   template <typename T, typename Add, typename SetOne>
-  absl::Status SetWhole(const Value& value, Add add, SetOne set) {
+  absl::Status SetWhole(const JsonScalar& value, Add add, SetOne set) {
     const std::optional<T> whole = ToWhole<T>(value);
     if (whole) return Put(*whole, add, set);
     return absl::InvalidArgumentError(absl::StrCat(Shown(value), " is not a whole number from ",
@@ -146,7 +143,7 @@ class FieldSetter {
                                                    std::numeric_limits<T>::max()));
   }
 
-  absl::Status SetDouble(const Value& value) {
+  absl::Status SetDouble(const JsonScalar& value) {
     const std::optional<double> number = ToDouble(value);
     if (!number) return Not(value, "a number");
     return Put(*number, &Reflection::AddDouble, &Reflection::SetDouble);
@@ -161,7 +158,7 @@ class FieldSetter {
     return absl::OkStatus();
   }
 
-  absl::Status SetEnum(const Value& value) {
+  absl::Status SetEnum(const JsonScalar& value) {
     const std::optional<int32_t> number = ToWhole<int32_t>(value);
     if (number) return Put(*number, &Reflection::AddEnumValue, &Reflection::SetEnumValue);
     const auto* name = std::get_if<std::string>(&value);
@@ -173,7 +170,7 @@ class FieldSetter {
     return Put(found->number(), &Reflection::AddEnumValue, &Reflection::SetEnumValue);
   }
 
-  absl::Status SetDuration(const Value& value) {
+  absl::Status SetDuration(const JsonScalar& value) {
     google::protobuf::Duration duration;
     const auto* text = std::get_if<std::string>(&value);
     if (text == nullptr || !google::protobuf::util::TimeUtil::FromString(*text, &duration)) {
@@ -200,25 +197,39 @@ struct Frame {
   std::string key = {};             // of it, whose value comes next
 };
 
-// Takes the events of the parser. One that returns false ends the parsing; status() says why.
-class Reader {
+// When an event returns false, status() says why.
+class Reader : public JsonEvents {
  public:
   explicit Reader(Message& message) : root_(message) {}
 
   const absl::Status& status() const { return status_; }
 
-  bool null() {
-    if (frames_.empty()) return Fault("null is not an object");
-    return frames_.back().in_list || frames_.back().is_map ? Fault("null is not a value") : true;
+  bool Null() override {
+    if (frames_.empty()) return Refuse("null is not an object");
+    return frames_.back().in_list || frames_.back().is_map ? Refuse("null is not a value") : true;
   }
-  bool boolean(bool value) { return Scalar(value); }
-  bool number_integer(int64_t value) { return Scalar(value); }
-  bool number_unsigned(uint64_t value) { return Scalar(value); }
-  bool number_float(double value, const std::string&) { return Scalar(value); }
-  bool string(std::string& value) { return Scalar(std::move(value)); }
-  bool binary(nlohmann::json::binary_t&) { return Fault("binary data"); }
 
-  bool start_object(size_t) {
+  bool Scalar(JsonScalar value) override {
+    if (frames_.empty()) return Refuse(absl::StrCat(Shown(value), " is not an object"));
+    Frame& frame = frames_.back();
+    Message* message = frame.message;
+    const FieldDescriptor* field = frame.field;
+    if (frame.is_map) {
+      message = message->GetReflection()->AddMessage(message, field);
+      const Descriptor& entry = *field->message_type();
+      field = entry.map_value();
+      (void)FieldSetter(*message, *entry.map_key()).Set(frame.key);
+    } else if (field->is_repeated() && !frame.in_list) {
+      return Refuse(
+          absl::StrCat(Shown(value), " is not ", field->is_map() ? "an object" : "a list"));
+    }
+    const absl::Status status = FieldSetter(*message, *field).Set(value);
+    if (!status.ok()) return Refuse(status);
+    Next();
+    return true;
+  }
+
+  bool BeginObject() override {
     if (frames_.empty()) {
       frames_.push_back({.message = &root_});
       return true;
@@ -230,8 +241,8 @@ class Reader {
       return true;
     }
     const bool of_message = field.message_type() != nullptr && !frame.is_map && !IsDuration(field);
-    if (!of_message) return Fault("an object is not its value");
-    if (field.is_repeated() && !frame.in_list) return Fault("an object is not a list");
+    if (!of_message) return Refuse("an object is not its value");
+    if (field.is_repeated() && !frame.in_list) return Refuse("an object is not a list");
     const Reflection& reflection = *frame.message->GetReflection();
     Message* const part = field.is_repeated() ? reflection.AddMessage(frame.message, &field)
                                               : reflection.MutableMessage(frame.message, &field);
@@ -239,11 +250,11 @@ class Reader {
     return true;
   }
 
-  bool key(std::string& name) {
+  bool Key(std::string& name) override {
     Frame& frame = frames_.back();
     if (frame.is_map) {
       frame.key = name;
-      return frame.keys.insert(name).second || Fault("given twice");
+      return frame.keys.insert(name).second || Refuse("given twice");
     }
     frame.field = nullptr;
     const Descriptor& type = *frame.message->GetDescriptor();
@@ -258,78 +269,54 @@ class Reader {
     frame.field = field;
     assert(type.field_count() <= 64);
     const uint64_t bit = uint64_t{1} << field->index();
-    if ((frame.given & bit) != 0) return Fault("given twice");
+    if ((frame.given & bit) != 0) return Refuse("given twice");
     frame.given |= bit;
     const auto* choice = field->real_containing_oneof();
     if (choice != nullptr && frame.message->GetReflection()->HasOneof(*frame.message, choice)) {
       const auto* other =
           frame.message->GetReflection()->GetOneofFieldDescriptor(*frame.message, choice);
-      return Fault(absl::StrCat("given beside ", other->name()));
+      return Refuse(absl::StrCat("given beside ", other->name()));
     }
     return true;
   }
 
-  bool end_object() {
+  bool EndObject() override {
     frames_.pop_back();
     Next();
     return true;
   }
 
-  bool start_array(size_t) {
-    if (frames_.empty()) return Fault("a list is not an object");
+  bool BeginArray() override {
+    if (frames_.empty()) return Refuse("a list is not an object");
     Frame& frame = frames_.back();
     const bool of_list = frame.field->is_repeated() && !frame.field->is_map() && !frame.in_list;
-    if (!of_list) return Fault("a list is not its value");
+    if (!of_list) return Refuse("a list is not its value");
     frame.in_list = true;
     frame.index = 0;
     return true;
   }
 
-  bool end_array() {
+  bool EndArray() override {
     frames_.back().in_list = false;
     return true;
   }
 
-  bool parse_error(size_t, const std::string&, const nlohmann::json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-    const std::string what = error.what();
-    const size_t bracket = what.find("] ");
-    return Fault(absl::CHexEscape(
-        what.substr(bracket == std::string::npos ? 0 : bracket + 2, 3 * kMostShown)));
+  void Fault(std::string_view fault) override {
+    Refuse(absl::CHexEscape(std::string(fault.substr(0, 3 * kMostShown))));
   }
 
  private:
-  bool Scalar(Value value) {
-    if (frames_.empty()) return Fault(absl::StrCat(Shown(value), " is not an object"));
-    Frame& frame = frames_.back();
-    Message* message = frame.message;
-    const FieldDescriptor* field = frame.field;
-    if (frame.is_map) {
-      message = message->GetReflection()->AddMessage(message, field);
-      const Descriptor& entry = *field->message_type();
-      field = entry.map_value();
-      (void)FieldSetter(*message, *entry.map_key()).Set(frame.key);
-    } else if (field->is_repeated() && !frame.in_list) {
-      return Fault(
-          absl::StrCat(Shown(value), " is not ", field->is_map() ? "an object" : "a list"));
-    }
-    const absl::Status status = FieldSetter(*message, *field).Set(value);
-    if (!status.ok()) return Fault(status);
-    Next();
-    return true;
-  }
-
   void Next() {
     if (!frames_.empty() && frames_.back().in_list) ++frames_.back().index;
   }
 
-  bool Fault(const absl::Status& status) {
+  bool Refuse(const absl::Status& status) {
     const std::string place = Place();
     status_ = absl::Status(status.code(),
                            absl::StrCat(place, place.empty() ? "" : ": ", status.message()));
     return false;
   }
-  bool Fault(const std::string& text) { return Fault(absl::InvalidArgumentError(text)); }
+  bool Refuse(const std::string& text) { return Refuse(absl::InvalidArgumentError(text)); }
 
   // Of the value that comes next.
   std::string Place() const {
@@ -355,7 +342,7 @@ class Reader {
 
 absl::Status ReadMessageJson(std::string_view json, google::protobuf::Message& message) {
   Reader reader(message);
-  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &reader)) return reader.status();
+  if (!ReadJson(json, reader)) return reader.status();
   return absl::OkStatus();
 }
 

@@ -1,18 +1,15 @@
 #include "client/loadgen/load_report.h"
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "client/report/table.h"
 
 namespace traverse::loadgen {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Column {
   const char* name;
@@ -113,8 +110,8 @@ std::string LoadJson(const LoadHeading& heading, const LoadResult& result) {
   Json out;
   out["target"] = heading.target;
   out["strategy"] = heading.strategy;
-  out["rate"] = options.rate > 0 ? Json(options.rate) : Json(nullptr);
-  out["in_flight"] = options.rate > 0 ? Json(nullptr) : Json(options.in_flight);
+  out["rate"] = options.rate > 0 ? Json(options.rate) : Json();
+  out["in_flight"] = options.rate > 0 ? Json() : Json(options.in_flight);
   out["seconds"] = seconds;
   out["seed"] = options.seed;
   out["connections"] = heading.connections;
@@ -123,21 +120,24 @@ std::string LoadJson(const LoadHeading& heading, const LoadResult& result) {
   out["ok_per_second"] = static_cast<double>(jobs) / seconds;
   out["not_sent"] = result.not_sent;
   out["send_lag_ms"] = LatencyJson(result.send_lag);
-  out["sizes"] = Json::array();
+  JsonArray sizes;
   for (size_t i = 0; i < result.ok.size(); ++i) {
-    out["sizes"].push_back({{"layers", heading.mix[i].layers},
-                            {"sent", result.sent[i]},
-                            {"ok", result.ok[i].jobs},
-                            {"latency_ms", LatencyJson(result.ok[i].latency)}});
+    sizes.push_back(JsonObject{{"layers", heading.mix[i].layers},
+                               {"sent", result.sent[i]},
+                               {"ok", result.ok[i].jobs},
+                               {"latency_ms", LatencyJson(result.ok[i].latency)}});
   }
-  out["codes"] = Json::object();
+  out["sizes"] = std::move(sizes);
+  Json codes = JsonObject();
   for (const auto& [code, tally] : result.code) {
-    out["codes"][code] = {{"jobs", tally.jobs},
-                          {"latency_ms", LatencyJson(tally.latency)},
-                          {"from_sent_ms", LatencyJson(tally.from_sent)}};
+    Json& entry = codes[code];
+    entry = JsonObject{{"jobs", tally.jobs},
+                       {"latency_ms", LatencyJson(tally.latency)},
+                       {"from_sent_ms", LatencyJson(tally.from_sent)}};
     const auto example = result.example.find(code);
-    if (example != result.example.end()) out["codes"][code]["example"] = example->second;
+    if (example != result.example.end()) entry["example"] = example->second;
   }
+  out["codes"] = std::move(codes);
   return JsonText(out, 1) + "\n";
 }
 

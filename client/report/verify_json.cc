@@ -1,20 +1,17 @@
 #include "client/report/verify_json.h"
 
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 
 namespace traverse::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json LineOrNull(const VerifyBreak& found) {
   Json json;
   json["original_line"] = found.original_line;
   json["optimised_line"] = found.optimised_line;
-  json["layer"] = found.layer < 0 ? Json(nullptr) : Json(found.layer + 1);
+  json["layer"] = found.layer < 0 ? Json() : Json(found.layer + 1);
   json["message"] = found.message;
   return json;
 }
@@ -31,13 +28,13 @@ Json RuleJson(const VerifyReport& report, VerifyRule rule) {
     if (first == nullptr) first = &found;
     if (found.layer >= 0) layers.insert(found.layer + 1);
   }
-  json["layers"] = layers;
-  json["first"] = first == nullptr ? Json(nullptr) : LineOrNull(*first);
+  json["layers"] = JsonArray(layers.begin(), layers.end());
+  json["first"] = first == nullptr ? Json() : LineOrNull(*first);
   return json;
 }
 
 Json AllowJson(const VerifyPermissions& permissions) {
-  Json names = Json::array();
+  JsonArray names;
   if (permissions.infill_order) names.push_back("infill_order");
   if (permissions.wall_order) names.push_back("wall_order");
   if (permissions.fan_order) names.push_back("fan_order");

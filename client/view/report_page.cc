@@ -2,13 +2,12 @@
 
 #include <atomic>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "client/gcode/parallel.h"
 #include "client/view/drawing/markup.h"
 #include "client/view/drawing/palette.h"
@@ -18,11 +17,9 @@
 namespace traverse::view {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 template <typename T>
 Json OrNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
+  return value ? Json(*value) : Json();
 }
 
 // Files state three digits, so three are enough.
@@ -30,7 +27,7 @@ double Rounded(double value) { return std::round(value * 1000) / 1000; }
 
 // [layer] of a figure that a file states; null unless the file states it for all layers.
 Json LayersJson(const RouteNotes& route, std::optional<int64_t> Figures::*figure) {
-  Json values = Json::array();
+  JsonArray values;
   for (const Figures& layer : route.layers) {
     if (!(layer.*figure)) return nullptr;
     values.push_back(*(layer.*figure));
@@ -39,44 +36,46 @@ Json LayersJson(const RouteNotes& route, std::optional<int64_t> Figures::*figure
 }
 
 Json RouteJson(const RouteNotes& route) {
-  Json travel = Json::array();
+  JsonArray travel;
   for (const Figures& layer : route.layers) travel.push_back(Rounded(layer.travel_mm));
-  return {{"label", ValidUtf8(route.label)},
-          {"travel", Rounded(route.total.travel_mm)},
-          {"seconds", Rounded(route.total.seconds)},
-          {"retractions", OrNull(route.total.retractions)},
-          {"hidden", OrNull(route.total.hidden_retractions)},
-          {"crossings", OrNull(route.total.crossings)},
-          {"gap", OrNull(route.gap)},
-          {"compute", Rounded(route.compute_seconds)},
-          {"layers",
-           {{"travel", std::move(travel)},
-            {"retractions", LayersJson(route, &Figures::retractions)},
-            {"crossings", LayersJson(route, &Figures::crossings)}}}};
+  return JsonObject{{"label", ValidUtf8(route.label)},
+                    {"travel", Rounded(route.total.travel_mm)},
+                    {"seconds", Rounded(route.total.seconds)},
+                    {"retractions", OrNull(route.total.retractions)},
+                    {"hidden", OrNull(route.total.hidden_retractions)},
+                    {"crossings", OrNull(route.total.crossings)},
+                    {"gap", OrNull(route.gap)},
+                    {"compute", Rounded(route.compute_seconds)},
+                    {"layers", JsonObject{{"travel", std::move(travel)},
+                                          {"retractions", LayersJson(route, &Figures::retractions)},
+                                          {"crossings", LayersJson(route, &Figures::crossings)}}}};
 }
 
 Json SceneJson(const Scene& scene, const std::string& made, size_t paths) {
-  Json features = Json::array();
+  JsonArray features;
   for (const std::string& name : scene.features) {
     const FeatureColor color = ColorOf(name);
-    features.push_back({{"name", ValidUtf8(name)}, {"light", color.light}, {"dark", color.dark}});
+    features.push_back(
+        JsonObject{{"name", ValidUtf8(name)}, {"light", color.light}, {"dark", color.dark}});
   }
-  Json routes = Json::array();
+  JsonArray routes;
   for (const RouteNotes& route : scene.routes) routes.push_back(RouteJson(route));
-  Json heights = Json::array();
+  JsonArray heights;
   for (const double z : scene.layer_z_mm) heights.push_back(Rounded(z));
-  return {{"title", ValidUtf8(scene.title)},
-          {"made", ValidUtf8(made)},
-          {"moves", scene.moves_note},
-          {"seconds", scene.seconds_name},
-          {"grid", kGridMm},
-          {"first", scene.first_layer},
-          {"open", LayerWithMostSaved(scene)},
-          {"shown", scene.shown},
-          {"paths", paths},
-          {"features", std::move(features)},
-          {"routes", std::move(routes)},
-          {"layers", {{"id", scene.layer_ids}, {"z", std::move(heights)}}}};
+  return JsonObject{
+      {"title", ValidUtf8(scene.title)},
+      {"made", ValidUtf8(made)},
+      {"moves", scene.moves_note},
+      {"seconds", scene.seconds_name},
+      {"grid", kGridMm},
+      {"first", scene.first_layer},
+      {"open", LayerWithMostSaved(scene)},
+      {"shown", scene.shown},
+      {"paths", paths},
+      {"features", std::move(features)},
+      {"routes", std::move(routes)},
+      {"layers", JsonObject{{"id", JsonArray(scene.layer_ids.begin(), scene.layer_ids.end())},
+                            {"z", std::move(heights)}}}};
 }
 
 // JSON that neither ends a script element nor begins a comment in one, whatever its texts are.

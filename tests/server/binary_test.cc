@@ -10,7 +10,6 @@
 #include <chrono>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -104,16 +103,14 @@ TEST(Binary, LogsOneLineOfJsonForEachJob) {
   std::istringstream lines(server.process().Errors());
   int jobs = 0;
   for (std::string line; std::getline(lines, line);) {
-    const auto json = nlohmann::json::parse(line);
-    if (json["event"] != "job") continue;
+    if (line.find("\"event\":\"job\"") == std::string::npos) continue;
     ++jobs;
-    EXPECT_EQ(json["job_id"], "a \"quoted\"\nid");
-    EXPECT_EQ(json["layers"], 3);
-    EXPECT_EQ(json["points"], 3 * 12);
-    EXPECT_EQ(json["code"], "OK");
-    EXPECT_EQ(json["strategy"], "none");
-    EXPECT_EQ(json["trace_id"], "4bf92f3577b34da6a3ce929d0e0e4736");
-    EXPECT_EQ(json["caller"], "ipv4:127.0.0.1");
+    for (const char* const field :
+         {R"("job_id":"a \"quoted\"\nid")", R"("layers":3,)", R"("points":36,)", R"("code":"OK")",
+          R"("strategy":"none")", R"("trace_id":"4bf92f3577b34da6a3ce929d0e0e4736")",
+          R"("caller":"ipv4:127.0.0.1")"}) {
+      EXPECT_THAT(line, HasSubstr(field));
+    }
   }
   EXPECT_EQ(jobs, 1);
 }

@@ -5,13 +5,13 @@
 
 #include <google/protobuf/descriptor.h>
 
-#include <nlohmann/json.hpp>
+#include "client/files/json.h"
 
 namespace traverse::gateway {
 
 // Adds the schema of `type`, and of all messages in it, to `schemas` under their names, which are
 // those of the .proto without the package.
-void AddSchema(const google::protobuf::Descriptor& type, nlohmann::ordered_json& schemas);
+void AddSchema(const google::protobuf::Descriptor& type, Json& schemas);
 
 }  // namespace traverse::gateway
 

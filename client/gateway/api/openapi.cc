@@ -1,6 +1,5 @@
 #include "client/gateway/api/openapi.h"
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,7 +7,7 @@
 
 #include "client/cli/flags/flags.h"
 #include "client/cli/flags/verify_flags.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "client/gateway/api/message_schemas.h"
 #include "client/gateway/api/openapi_outline.h"
 #include "client/gateway/api/parameters.h"
@@ -20,14 +19,12 @@
 namespace traverse::gateway {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json ParameterJson(const cli::Flag& flag) {
-  Json schema = {{"type", flag.value.empty() ? "boolean" : "string"}};
-  if (!flag.choices.empty()) schema["enum"] = flag.choices;
-  Json out = {{"name", flag.name}, {"in", "query"}, {"description", flag.help}};
+  Json schema = JsonObject{{"type", flag.value.empty() ? "boolean" : "string"}};
+  if (!flag.choices.empty()) schema["enum"] = JsonArray(flag.choices.begin(), flag.choices.end());
+  Json out = JsonObject{{"name", flag.name}, {"in", "query"}, {"description", flag.help}};
   if (flag.repeatable) {
-    schema = {{"type", "array"}, {"items", {{"type", "string"}}}};
+    schema = JsonObject{{"type", "array"}, {"items", JsonObject{{"type", "string"}}}};
     out["explode"] = true;
   }
   out["schema"] = std::move(schema);
@@ -35,14 +32,14 @@ Json ParameterJson(const cli::Flag& flag) {
 }
 
 // A word among the parameters stands for the rows of a table.
-Json WithTables(const Json& parameters) {
-  Json out = Json::array();
+Json WithTables(const JsonArray& parameters) {
+  JsonArray out;
   for (const Json& parameter : parameters) {
-    if (!parameter.is_string()) {
+    if (parameter.Text() == nullptr) {
       out.push_back(parameter);
       continue;
     }
-    const bool verify = parameter == "verify";
+    const bool verify = *parameter.Text() == "verify";
     for (const cli::Flag& flag : verify ? cli::VerifyFlagTable() : ParameterTable()) {
       out.push_back(ParameterJson(flag));
     }
@@ -52,24 +49,26 @@ Json WithTables(const Json& parameters) {
 
 // The numbers in `problems` become responses.
 void Complete(Json& operation) {
-  for (const int status : operation["problems"]) {
+  for (const Json& problem : operation["problems"].items()) {
+    const int status = static_cast<int>(*problem.Unsigned());
     Json& response = operation["responses"][std::to_string(status)];
     response["description"] = ReasonOf(status);
     response["content"]["application/problem+json"]["schema"]["$ref"] =
         "#/components/schemas/Problem";
   }
-  operation.erase("problems");
-  if (operation.contains("parameters")) {
-    operation["parameters"] = WithTables(operation["parameters"]);
+  std::erase_if(operation.members(),
+                [](const JsonMember& member) { return member.name == "problems"; });
+  if (Json* const parameters = operation.Find("parameters")) {
+    *parameters = WithTables(parameters->items());
   }
 }
 
 std::string DocumentText() {
-  Json document = ParseOrderedJson(OpenApiOutline());
+  Json document = ParseJson(OpenApiOutline()).value();
   document["info"]["version"] = kVersion;
-  for (Json& path : document["paths"]) {
+  for (JsonMember& path : document["paths"].members()) {
     for (const char* method : {"get", "post", "delete"}) {
-      if (path.contains(method)) Complete(path[method]);
+      if (Json* const operation = path.value.Find(method)) Complete(*operation);
     }
   }
   for (const auto* type :

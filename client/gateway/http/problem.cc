@@ -1,16 +1,20 @@
 #include "client/gateway/http/problem.h"
 
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 
 namespace traverse::gateway {
 namespace {
 
 constexpr int kRetryAfterSeconds = 5;
+
+JsonObject JsonOf(int status, const std::string& detail) {
+  return {
+      {"type", "about:blank"}, {"title", ReasonOf(status)}, {"status", status}, {"detail", detail}};
+}
 
 }  // namespace
 
@@ -52,9 +56,7 @@ std::string ReasonOf(int status) {
 }
 
 std::string ProblemJson(int status, const std::string& detail) {
-  const nlohmann::ordered_json json = {
-      {"type", "about:blank"}, {"title", ReasonOf(status)}, {"status", status}, {"detail", detail}};
-  return JsonText(json) + "\n";
+  return JsonText(JsonOf(status, detail)) + "\n";
 }
 
 HttpResponse Problem(int status, const std::string& detail) {
@@ -101,11 +103,13 @@ int HttpStatusOf(absl::StatusCode code) {
 
 HttpResponse Problem(int status, const std::string& detail, const ProblemDetails& details) {
   HttpResponse response = Problem(status, detail);
-  auto json = ParseOrderedJson(std::get<std::string>(response.body));
+  Json json = JsonOf(status, detail);
   if (!details.code.empty()) json["code"] = details.code;
+  JsonArray faults;
   for (const ProblemField& fault : details.faults) {
-    json["details"].push_back({{"field", fault.field}, {"description", fault.description}});
+    faults.push_back(JsonObject{{"field", fault.field}, {"description", fault.description}});
   }
+  if (!faults.empty()) json["details"] = std::move(faults);
   if (details.retry_after) {
     json["retry_after"] = *details.retry_after;
     std::erase_if(response.headers,

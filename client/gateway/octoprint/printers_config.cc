@@ -1,21 +1,19 @@
 #include "client/gateway/octoprint/printers_config.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "client/files/read_file.h"
 #include "client/gateway/api/machine_text.h"
 
 namespace traverse::gateway {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr size_t kMaxConfigBytes = size_t{1} << 20;
 
@@ -107,10 +105,10 @@ absl::Status SetField(const std::string& key, const std::string& text, Printer& 
 absl::StatusOr<Printer> ParsePrinter(const Json& json, const std::string& place) {
   if (!json.is_object()) return Fault(place, "not an object");
   Printer printer;
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& [key, value] : json.members()) {
     const std::string field = absl::StrCat(place, ".", key);
-    if (!value.is_string()) return Fault(field, "not a string");
-    if (absl::Status status = SetField(key, value.get<std::string>(), printer); !status.ok()) {
+    if (value.Text() == nullptr) return Fault(field, "not a string");
+    if (absl::Status status = SetField(key, *value.Text(), printer); !status.ok()) {
       return absl::Status(status.code(), absl::StrCat(field, ": ", status.message()));
     }
   }
@@ -129,20 +127,23 @@ const Printer* PrintersConfig::Find(const std::string& name) const {
 }
 
 absl::StatusOr<PrintersConfig> ParsePrinters(const std::string& json) {
-  const Json document = ParseJson(json);
-  if (!document.is_object()) return absl::InvalidArgumentError("not an object of JSON");
+  const std::optional<Json> document = ParseJson(json);
+  if (!document || !document->is_object()) {
+    return absl::InvalidArgumentError("not an object of JSON");
+  }
   PrintersConfig config;
-  for (const auto& [key, value] : document.items()) {
-    if (key == "default" && value.is_string()) {
-      config.default_name = value.get<std::string>();
+  for (const auto& [key, value] : document->members()) {
+    if (key == "default" && value.Text() != nullptr) {
+      config.default_name = *value.Text();
     } else if (key != "printers" || !value.is_array()) {
       return Fault(key, "unknown field, or of the wrong type");
     }
   }
-  if (!document.contains("printers")) return absl::InvalidArgumentError("has no printers");
-  for (size_t i = 0; i < document["printers"].size(); ++i) {
+  const Json* const printers = document->Find("printers");
+  if (printers == nullptr) return absl::InvalidArgumentError("has no printers");
+  for (size_t i = 0; i < printers->items().size(); ++i) {
     const std::string place = absl::StrCat("printers[", i, "]");
-    absl::StatusOr<Printer> printer = ParsePrinter(document["printers"][i], place);
+    absl::StatusOr<Printer> printer = ParsePrinter(printers->items()[i], place);
     if (!printer.ok()) return printer.status();
     if (config.Find(printer->name) != nullptr) {
       return Fault(place + ".name", absl::StrCat("there is another \"", printer->name, "\""));

@@ -5,19 +5,17 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "server/version.h"
 
 namespace traverse::gateway {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxAnswerBytes = size_t{1} << 20;
 
@@ -232,20 +230,20 @@ absl::StatusOr<UpstreamAnswer> PutFile(const Printer& printer, const std::string
 // Whether the print that `upload` asks for has begun. A Moonraker says so, and accepts files while
 // its printer is offline or busy; a PrusaLink does not say.
 bool PrintBegan(const PrinterUpload& upload, const UpstreamAnswer& answer) {
-  const Json said = ParseOrderedJson(answer.body);
-  if (!said.is_object()) return upload.print;
-  const auto started = said.find("print_started");
-  return upload.print && (started == said.end() || (started->is_boolean() && started->get<bool>()));
+  const std::optional<Json> said = ParseJson(answer.body);
+  const Json* const started = said ? said->Find("print_started") : nullptr;
+  if (started == nullptr) return upload.print;
+  return upload.print && started->Bool() != nullptr && *started->Bool();
 }
 
 // What OctoPrint answers to an upload.
 void SayAsOctoPrint(const PrinterUpload& upload, UpstreamAnswer& answer) {
   const std::string folder = FolderOf(upload);
   const std::string path = folder.empty() ? upload.name : absl::StrCat(folder, "/", upload.name);
-  const Json file = {{"name", upload.name}, {"path", path}, {"origin", upload.storage}};
-  const Json json = {{"files", {{upload.storage, file}}},
-                     {"done", true},
-                     {"effectivePrint", PrintBegan(upload, answer)}};
+  const Json file = JsonObject{{"name", upload.name}, {"path", path}, {"origin", upload.storage}};
+  const Json json = JsonObject{{"files", JsonObject{{upload.storage, file}}},
+                               {"done", true},
+                               {"effectivePrint", PrintBegan(upload, answer)}};
   answer.status = 201;
   answer.content_type = "application/json";
   answer.body = JsonText(json) + "\n";
@@ -273,10 +271,10 @@ absl::StatusOr<UpstreamAnswer> AskVersion(const Printer& printer, const std::str
   Call call(printer, moonraker ? "/server/info" : "/api/version", api_key, limits);
   absl::StatusOr<UpstreamAnswer> answer = call.Run(printer);
   if (!answer.ok() || answer->status != 200 || !moonraker) return answer;
-  const Json json = {{"api", "0.1"},
-                     {"server", "1.9.0"},
-                     {"text", absl::StrCat("OctoPrint 1.9.0 (traverse-gateway ", kVersion,
-                                           " before a Moonraker)")}};
+  const Json json = JsonObject{{"api", "0.1"},
+                               {"server", "1.9.0"},
+                               {"text", absl::StrCat("OctoPrint 1.9.0 (traverse-gateway ", kVersion,
+                                                     " before a Moonraker)")}};
   answer->content_type = "application/json";
   answer->body = JsonText(json) + "\n";
   return answer;

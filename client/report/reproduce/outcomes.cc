@@ -2,19 +2,17 @@
 
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "client/files/json_text.h"
+#include "client/files/json.h"
 #include "client/files/read_file.h"
 
 namespace traverse::report {
 namespace {
-
-using Json = nlohmann::json;
 
 struct Corner {
   double x = 0, y = 0;
@@ -67,20 +65,57 @@ void AddLayer(const v1::LayerResult& layer, bool is_first, RunOutcome& outcome) 
 }
 
 Json ToJson(const std::string& key, const RunOutcome& outcome) {
-  Json moves = Json::array();
+  JsonArray moves;
   for (const DrawnMove& m : outcome.first_layer) {
-    moves.push_back({m.x1, m.y1, m.x2, m.y2, m.to_contour ? 1 : 0});
+    moves.push_back(JsonArray{m.x1, m.y1, m.x2, m.y2, m.to_contour ? 1 : 0});
   }
-  return {{"run", key}, {"values", outcome.values}, {"moves", std::move(moves)}};
+  Json values = JsonObject();
+  for (const auto& [name, value] : outcome.values) values.members().push_back({name, value});
+  return JsonObject{{"moves", std::move(moves)}, {"run", key}, {"values", std::move(values)}};
 }
 
-RunOutcome FromJson(const Json& json) {
+// Unset unless it is what ToJson() writes.
+std::optional<DrawnMove> MoveOf(const Json& json) {
+  if (!json.is_array() || json.items().size() != 5) return std::nullopt;
+  double numbers[5];
+  for (size_t i = 0; i < 5; ++i) {
+    const std::optional<double> number = json.items()[i].Number();
+    if (!number) return std::nullopt;
+    numbers[i] = *number;
+  }
+  return DrawnMove{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] != 0};
+}
+
+std::optional<RunOutcome> OutcomeOf(const Json& values, const Json& moves) {
+  if (!values.is_object() || !moves.is_array()) return std::nullopt;
   RunOutcome outcome;
-  outcome.values = json.at("values").get<std::map<std::string, double>>();
-  for (const Json& m : json.at("moves")) {
-    outcome.first_layer.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4).get<double>() != 0});
+  for (const auto& [name, value] : values.members()) {
+    const std::optional<double> number = value.Number();
+    if (!number) return std::nullopt;
+    outcome.values[name] = *number;
+  }
+  for (const Json& json : moves.items()) {
+    const std::optional<DrawnMove> move = MoveOf(json);
+    if (!move) return std::nullopt;
+    outcome.first_layer.push_back(*move);
   }
   return outcome;
+}
+
+// Adds the outcome of a line to `outcomes`; false unless it is what ToJson() writes.
+bool AddLine(const std::string& line, std::map<std::string, RunOutcome>& outcomes) {
+  const std::optional<Json> json = ParseJson(line);
+  if (!json) return false;
+  const Json* const run = json->Find("run");
+  const Json* const values = json->Find("values");
+  const Json* const moves = json->Find("moves");
+  if (run == nullptr || run->Text() == nullptr || values == nullptr || moves == nullptr) {
+    return false;
+  }
+  std::optional<RunOutcome> outcome = OutcomeOf(*values, *moves);
+  if (!outcome) return false;
+  outcomes[*run->Text()] = *std::move(outcome);
+  return true;
 }
 
 }  // namespace
@@ -119,15 +154,10 @@ absl::StatusOr<OutcomeFile> OutcomeFile::Open(const std::string& name) {
   std::vector<std::string> lines = absl::StrSplit(*text, '\n');
   for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].empty()) continue;
-    const Json json = ParseJson(lines[i]);
-    const bool fits = json.is_object() && json.contains("run") && json["run"].is_string() &&
-                      json.contains("values") && json["values"].is_object() &&
-                      json.contains("moves") && json["moves"].is_array();
-    if (!fits) {
+    if (!AddLine(lines[i], file.outcomes_)) {
       if (i + 1 == lines.size()) break;  // writing was interrupted
       return absl::InvalidArgumentError(absl::StrFormat("%s:%d: no outcome of a run", name, i + 1));
     }
-    file.outcomes_[json["run"].get<std::string>()] = FromJson(json);
   }
   return file;
 }

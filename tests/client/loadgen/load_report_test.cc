@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include "client/files/json.h"
 
 namespace traverse::loadgen {
 namespace {
@@ -34,31 +34,31 @@ LoadHeading Heading() {
 }
 
 TEST(LoadReport, EachColumnIsItsOwnPercentile) {
-  const auto json = nlohmann::json::parse(LoadJson(Heading(), Thousand()));
-  const auto& latency = json["sizes"][0]["latency_ms"];
+  const Json json = ParseJson(LoadJson(Heading(), Thousand())).value();
+  const Json& latency = *json.Find("sizes")->items().at(0).Find("latency_ms");
 
-  EXPECT_NEAR(latency["p50"], 500, 5);
-  EXPECT_NEAR(latency["p90"], 900, 9);
-  EXPECT_NEAR(latency["p99"], 990, 9);
-  EXPECT_NEAR(latency["p99_9"], 999, 9);
-  EXPECT_NEAR(latency["max"], 1000, 1e-6);
-  EXPECT_NEAR(latency["mean"], 500.5, 1e-6);
-  EXPECT_EQ(json["ok"], 1000);
-  EXPECT_NEAR(json["ok_per_second"], 100, 1e-9);
+  EXPECT_NEAR(*latency.Find("p50")->Number(), 500, 5);
+  EXPECT_NEAR(*latency.Find("p90")->Number(), 900, 9);
+  EXPECT_NEAR(*latency.Find("p99")->Number(), 990, 9);
+  EXPECT_NEAR(*latency.Find("p99_9")->Number(), 999, 9);
+  EXPECT_NEAR(*latency.Find("max")->Number(), 1000, 1e-6);
+  EXPECT_NEAR(*latency.Find("mean")->Number(), 500.5, 1e-6);
+  EXPECT_EQ(json.Find("ok")->Number(), 1000);
+  EXPECT_NEAR(*json.Find("ok_per_second")->Number(), 100, 1e-9);
 }
 
 TEST(LoadReport, StatesTheRateOrTheJobsInFlight) {
   LoadHeading heading = Heading();
   heading.options.rate = 25;
-  const auto open = nlohmann::json::parse(LoadJson(heading, Thousand()));
+  const Json open = ParseJson(LoadJson(heading, Thousand())).value();
   heading.options.rate = 0;
   heading.options.in_flight = 7;
-  const auto closed = nlohmann::json::parse(LoadJson(heading, Thousand()));
+  const Json closed = ParseJson(LoadJson(heading, Thousand())).value();
 
-  EXPECT_EQ(open["rate"], 25);
-  EXPECT_TRUE(open["in_flight"].is_null());
-  EXPECT_TRUE(closed["rate"].is_null());
-  EXPECT_EQ(closed["in_flight"], 7);
+  EXPECT_EQ(open.Find("rate")->Number(), 25);
+  EXPECT_TRUE(open.Find("in_flight")->is_null());
+  EXPECT_TRUE(closed.Find("rate")->is_null());
+  EXPECT_EQ(closed.Find("in_flight")->Number(), 7);
 }
 
 TEST(LoadReport, TheTableHasTheSameFigures) {

@@ -8,10 +8,10 @@
 #include <zlib.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "absl/strings/escaping.h"
+#include "client/files/json.h"
 #include "client/view/page_template.h"
 #include "client/view/scene/layer_code.h"
 #include "engine/base/rng.h"
@@ -198,13 +198,14 @@ TEST(ReportPage, HoldsItsFiguresAsJsonAndTheLayerOnViewFirst) {
 
   const std::string begin = "<script id=\"scene\" type=\"application/json\">";
   const size_t at = page.find(begin) + begin.size();
-  const auto scene = nlohmann::json::parse(page.substr(at, page.find("</script", at) - at));
-  EXPECT_EQ(scene["title"], "q\"<\\");
-  EXPECT_EQ(scene["open"], 1);
-  EXPECT_EQ(scene["paths"], 3);
-  EXPECT_EQ(scene["routes"][1]["layers"]["travel"], (std::vector<double>{10, 10, 30}));
-  EXPECT_TRUE(scene["routes"][1]["layers"]["retractions"].is_null());
-  EXPECT_TRUE(scene["routes"][1]["crossings"].is_null());
+  const Json scene = ParseJson(page.substr(at, page.find("</script", at) - at)).value();
+  const Json& route = scene.Find("routes")->items().at(1);
+  EXPECT_EQ(*scene.Find("title")->Text(), "q\"<\\");
+  EXPECT_EQ(scene.Find("open")->Number(), 1);
+  EXPECT_EQ(scene.Find("paths")->Number(), 3);
+  EXPECT_EQ(JsonText(*route.Find("layers")->Find("travel")), "[10.0,10.0,30.0]");
+  EXPECT_TRUE(route.Find("layers")->Find("retractions")->is_null());
+  EXPECT_TRUE(route.Find("crossings")->is_null());
   EXPECT_LT(page.find("id=\"layer-1\""), page.find("id=\"layer-0\""));
   EXPECT_LT(page.find("id=\"layer-0\""), page.find("id=\"layer-2\""));
 }

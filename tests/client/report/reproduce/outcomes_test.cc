@@ -39,5 +39,18 @@ TEST(OutcomeFile, GoesOnFromWhatWasFinished) {
   std::filesystem::remove(name);
 }
 
+TEST(OutcomeFile, RefusesLinesThatItDoesNotWrite) {
+  const std::string name =
+      (std::filesystem::path(::testing::TempDir()) / "reproduce_odd.jsonl").string();
+  for (const char* const line :
+       {"[]", R"({"run":1,"values":{},"moves":[]})", R"({"run":"a","values":{"x":"y"},"moves":[]})",
+        R"({"run":"a","values":{},"moves":[[1,2,3,4]]})",
+        R"({"run":"a","values":{},"moves":[[1,2,3,4,"x"]]})"}) {
+    std::ofstream(name) << line << "\n\n";
+    EXPECT_EQ(OutcomeFile::Open(name).status().message(), name + ":1: no outcome of a run") << line;
+  }
+  std::filesystem::remove(name);
+}
+
 }  // namespace
 }  // namespace traverse::report
