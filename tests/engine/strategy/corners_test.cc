@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,6 +21,7 @@
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
+#include "tests/support/step_clock.h"
 
 namespace traverse {
 namespace {
@@ -30,8 +31,9 @@ using namespace traverse::testing;  // NOLINT
 // Rounding of a sum of costs, relative to it.
 constexpr double kRounding = 1e-9;
 
-// A search that goes round in circles ends here; one that is merely long does so as well.
-constexpr auto kShort = std::chrono::milliseconds(40);
+// A search that goes round in circles ends after so many looks at the clock; one that is merely
+// long does so as well.
+constexpr int64_t kLooks = 2000;
 
 // The range of the API: server/translate/field_ranges.cc.
 std::vector<CostSpec> CornerCosts() {
@@ -82,7 +84,8 @@ class CornersOf : public ::testing::TestWithParam<std::string> {
 
   // That the solution is valid, no worse than greedy, and its bound true.
   void Check(const OwnedProblem& owned, std::optional<double> optimum) {
-    Budget budget = Budget().Within(kShort);
+    const StepClock clock;
+    Budget budget(nullptr, StepClock::At(kLooks), nullptr, &clock);
     const Solution solution = strategy_->Solve(owned.problem, budget);
 
     ASSERT_OK(ValidateRoute(owned.plan(), solution.route));
@@ -176,7 +179,8 @@ TEST_P(CornersOf, TheOptionsGiveValidRoutes) {
         ASSERT_OK_AND_ASSIGN(strategy_, MakeStrategy(entry.name, {{spec.name, value}}));
         for (uint64_t seed = 1; seed <= 6; ++seed) {
           SCOPED_TRACE(absl::StrCat("seed ", seed));
-          Budget budget = Budget().Within(kShort);
+          const StepClock clock;
+          Budget budget(nullptr, StepClock::At(kLooks), nullptr, &clock);
           const OwnedProblem owned =
               RandomProblem(seed, {.min_paths = 1, .max_paths = seed % 2 == 0 ? 60 : 6});
 
@@ -210,7 +214,8 @@ TEST_P(CornersOf, TheOptionsTogetherGiveValidRoutes) {
       const Placement& placement = kPlacements[rng.Below(std::size(kPlacements))];
       OwnedProblem owned = Placed(RandomProblem(seed, {.max_paths = 40}), placement);
       owned.problem.cost = costs[rng.Below(static_cast<uint32_t>(costs.size()))];
-      Budget budget = Budget().Within(kShort);
+      const StepClock clock;
+      Budget budget(nullptr, StepClock::At(kLooks), nullptr, &clock);
 
       const Solution solution = strategy_->Solve(owned.problem, budget);
 
