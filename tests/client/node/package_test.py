@@ -39,8 +39,10 @@ def main():
             print(f"skipped: the packages cannot be had here\n{installed.stderr}")
             return SKIPPED
         shutil.copy(HERE / "types.ts", farm)
+        # Without the types of browsers, which take as long to check as all else.
         checked = subprocess.run(["node_modules/.bin/tsc", "--noEmit", "--strict", "--module", "nodenext", "--target", "es2022",
-                                  "types.ts"], cwd=farm, capture_output=True, text=True, check=False)
+                                  "--lib", "es2022", "--skipDefaultLibCheck", "types.ts"],
+                                 cwd=farm, capture_output=True, text=True, check=False)
         if checked.returncode:
             sys.exit(checked.stdout)
         shutil.copy(HERE / "cases.mjs", farm)
