@@ -203,6 +203,11 @@ uint32_t SetterTable::Intern(std::string_view line, SlotMask slots) {
   return id;
 }
 
+uint32_t SetterTable::Find(std::string_view line) const {
+  const auto found = index_.find(line);
+  return found == index_.end() ? 0 : found->second;
+}
+
 uint32_t StateTable::Intern(const PrintState& state) {
   const auto [found, inserted] = index_.try_emplace(state, static_cast<uint32_t>(states_.size()));
   if (inserted) states_.push_back(state);

@@ -102,10 +102,7 @@ class SetterTable {
   uint32_t Intern(std::string_view line, SlotMask slots);
 
   // The number of a known setter; 0 for others.
-  uint32_t Find(std::string_view line) const {
-    const auto found = index_.find(line);
-    return found == index_.end() ? 0 : found->second;
-  }
+  uint32_t Find(std::string_view line) const;
 
   const std::string& Line(uint32_t setter) const { return setters_[setter].line; }
   SlotMask Slots(uint32_t setter) const { return setters_[setter].slots; }
