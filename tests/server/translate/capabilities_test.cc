@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <regex>
 #include <string>
 #include <vector>
 
+#include "absl/strings/match.h"
+#include "absl/strings/str_split.h"
 #include "server/translate/translate_result.h"
 
 namespace traverse {
@@ -18,11 +19,12 @@ namespace {
 // Of the table's rows, such as | `initial_route` | 0.1.0 | Layer.initial_route: ... |
 std::vector<std::string> DocumentedWords() {
   std::ifstream page(TRAVERSE_PROTO_DIR "/VERSIONS.md");
-  const std::regex row(R"(\| `(\w+)` \| \d+\.\d+\.\d+ \| .{20,} \|)");
   std::vector<std::string> words;
   for (std::string line; std::getline(page, line);) {
-    std::smatch parts;
-    if (std::regex_match(line, parts, row)) words.push_back(parts[1]);
+    const std::vector<std::string> cells = absl::StrSplit(line, " | ");
+    const bool is_row = cells.size() >= 3 && absl::StartsWith(line, "| `") &&
+                        absl::EndsWith(cells[0], "`") && cells[2].size() >= 20;
+    if (is_row) words.push_back(cells[0].substr(3, cells[0].size() - 4));
   }
   return words;
 }
