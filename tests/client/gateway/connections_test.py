@@ -71,13 +71,13 @@ class Patience(Sockets):
     def test_an_answer_that_is_read_too_slowly_is_given_up(self):
         gateway = Gateway("--idle_timeout=1s", "--min_upload_rate=4000000")
         self.addCleanup(gateway.close)
-        body = lines_of_infill(16000)  # longer than what sockets hold
+        body = PART + b"; of no layer\n" * 500_000  # longer than what sockets hold
         connection = socket.socket()
         self.addCleanup(connection.close)
         connection.settimeout(60)
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
         connection.connect(("127.0.0.1", gateway.http_port))
-        connection.sendall(b"POST /v1/gcode?strategy=greedy&layers=1 HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body))
+        connection.sendall(b"POST /v1/gcode?strategy=greedy HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body))
         connection.sendall(body)
         connection.recv(1000)
         try:
