@@ -88,7 +88,7 @@ class Files(unittest.TestCase):
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
             for plate in range(1, 31):
                 file.writestr(f"Metadata/plate_{plate}.gcode", lines_of_infill(2))
-        status, headers, body = self.post("/v1/gcode?policy=free", archive.getvalue())
+        status, headers, body = self.post("/v1/gcode?policy=free&strategy=greedy", archive.getvalue())
         self.assertEqual(status, 200, body[:300])
         self.assertTrue(headers["traverse-summary"].endswith("; ..."))
         self.assertLess(max(len(value) for value in headers.values()), 2048)
