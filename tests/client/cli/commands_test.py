@@ -74,7 +74,7 @@ class Views(CommandLine):
         with lzma.open(gcode, "rb") as packed, open(plain, "wb") as file:
             file.write(packed.read())
         made = self.path("made.gcode")
-        out = self.succeed("optimize", plain, "-o", made, "--allow=infill_order")
+        out = self.succeed("optimize", plain, "-o", made, "--allow=infill_order", "--strategy=ni2opt")
         self.assertRegex(out, r"travel [0-9.]+ -> [0-9.]+ m \(-[1-9]")
         self.assertIn(", policy safe, allow infill_order: travel", read(made))
         self.assertIn("(policy safe, infill_order)", self.succeed("verify", plain, made))
@@ -210,23 +210,24 @@ class Routes(CommandLine):
         self.check(SMALL, document)
 
     def test_routes_hold_for_every_way_to_do_a_job(self):
+        quick = "--option=effort=0.1"
         for flags, expected in [
             ([], {}),
             (["--strategy=none"], {}),
-            (["--deposition=interleaved"], {"interleaved": True}),
-            (["--cleaning_every=2", "--cleaning_point=5,-10.5"], {"cleaning": (2, (5, -10.5))}),
-            (["--cleaning_every=5", "--cleaning_point=0,0"], {"cleaning": (5, (0, 0))}),
-            (["--layers=2-4"], {"first": 2}),
-            (["--layers=3"], {"first": 3}),
-            (["--cost=time", "--travel_speed=60", "--travel_accel=500"], {}),
-            (["--threads=1", "--seed=18446744073709551615"], {}),
-            (["--deadline=30s", "--layer_time_limit=1s"], {}),
+            ([quick, "--deposition=interleaved"], {"interleaved": True}),
+            ([quick, "--cleaning_every=2", "--cleaning_point=5,-10.5"], {"cleaning": (2, (5, -10.5))}),
+            ([quick, "--cleaning_every=5", "--cleaning_point=0,0"], {"cleaning": (5, (0, 0))}),
+            ([quick, "--layers=2-4"], {"first": 2}),
+            ([quick, "--layers=3"], {"first": 3}),
+            ([quick, "--cost=time", "--travel_speed=60", "--travel_accel=500"], {}),
+            ([quick, "--threads=1", "--seed=18446744073709551615"], {}),
+            ([quick, "--deadline=30s", "--layer_time_limit=1s"], {}),
         ]:
             with self.subTest(flags):
                 self.check(PART1, self.optimize(PART1, *flags), **expected)
 
     def test_the_checker_finds_faults(self):
-        given = self.optimize(PART1)
+        given = self.optimize(PART1, "--option=effort=0.1")
         part = check_routes.read_part(check_routes.read_text(PART1))
 
         def faults(change):
@@ -284,7 +285,7 @@ class Routes(CommandLine):
         island = max(i for i in range(gone) if lines[i].startswith("I"))
         label, count, rest = edited[island].split(",", 2)
         edited[island] = f"{label},{int(count) - 1},{rest}"
-        self.succeed("optimize", PART1, "--quiet", f"--json={self.path('routes.json')}")
+        self.succeed("optimize", PART1, "--quiet", f"--json={self.path('routes.json')}", "--strategy=ni2opt")
         known = json.loads(read(self.path("routes.json")))
 
         name, document, said = self.start_from("".join(edited))
@@ -304,13 +305,13 @@ class Routes(CommandLine):
         self.assertRegex(said, r"began with known routes of (\d+) of \1 layers \((\d+) of \2 paths in them\)\n")
         self.assertEqual([layer["route"] for layer in json.loads(read(again))["layers"]],
                          [layer["route"] for layer in json.loads(read(earlier))["layers"]])
-        self.succeed("optimize", gcode, "--quiet", f"--start_from={earlier}", "-o", self.path("out.gcode"))
+        self.succeed("optimize", gcode, "--quiet", "--strategy=greedy", f"--start_from={earlier}", "-o", self.path("out.gcode"))
         self.succeed("verify", gcode, self.path("out.gcode"))
 
     def test_pictures_show_what_was_given_beside_what_was_begun_with(self):
         routes, page = self.path("routes.json"), self.path("page.html")
-        self.succeed("optimize", PART1, "--quiet", f"--json={routes}")
-        self.succeed("optimize", PART1, "--quiet", f"--start_from={routes}", f"--report={page}")
+        self.succeed("optimize", PART1, "--quiet", "--strategy=ni2opt", f"--json={routes}")
+        self.succeed("optimize", PART1, "--quiet", "--strategy=ni2opt", f"--start_from={routes}", f"--report={page}")
         scene = json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>', read(page))[1])
         given = json.loads(read(routes))["total"]["travel_given_mm"]
         self.assertAlmostEqual(scene["routes"][0]["travel"], given, places=2)
@@ -375,8 +376,9 @@ class Routes(CommandLine):
 
     def test_reads_standard_input(self):
         with open(PART1, "rb") as file:
-            piped = self.succeed("optimize", "-", "--json=-", "--quiet", stdin=file.read())
-        self.assertEqual(json.loads(piped)["layers"][0]["route"], self.optimize(PART1)["layers"][0]["route"])
+            piped = self.succeed("optimize", "-", "--json=-", "--quiet", "--strategy=ni2opt", stdin=file.read())
+        self.assertEqual(json.loads(piped)["layers"][0]["route"],
+                         self.optimize(PART1, "--strategy=ni2opt")["layers"][0]["route"])
 
 
 class OtherCommands(CommandLine):
@@ -456,7 +458,7 @@ class Remote(CommandLine):
         dead.kill()
         dead.wait()
         _, address = self.start_server()
-        self.succeed("optimize", PART1, "--quiet", f"--server={dead_address},{address}")
+        self.succeed("optimize", PART1, "--quiet", "--strategy=greedy", f"--server={dead_address},{address}")
 
     def test_nobody_there_is_code_3(self):
         server, address = self.start_server()
