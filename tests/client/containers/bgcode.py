@@ -1,4 +1,5 @@
 """Binary G-code in a few lines, apart from the product: after libbgcode's specification and what PrusaSlicer writes."""
+import functools
 import struct
 import zlib
 
@@ -62,6 +63,7 @@ class Block:
         self.raw, self.offset, self.kind, self.compression = raw, offset, kind, compression
         self.size, self.parameters, self.data = size, parameters, data
 
+    @functools.cache  # the tests read it again and again
     def content(self):
         if self.compression == 1:
             content = zlib.decompress(self.data)
@@ -72,6 +74,7 @@ class Block:
         assert len(content) == self.size
         return content
 
+    @functools.cache
     def text(self):
         return unpack(self.content()) if self.parameters != b"\0\0" else self.content().decode()
 

@@ -2,6 +2,7 @@
 
 What the command writes is read by means of its own: zipfile, and a decoder of binary G-code in a few lines (bgcode.py).
 """
+import functools
 import hashlib
 import json
 import lzma
@@ -56,6 +57,7 @@ def read(name):
         return file.read()
 
 
+@functools.cache
 def sliced(layers=3):
     """A few layers of the bundled plate, with progress."""
     text = lzma.decompress(read(SLICED)).decode()
