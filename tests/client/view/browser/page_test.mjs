@@ -91,7 +91,7 @@ test("opens with its headline, both pictures, and the layer with the most saved"
     const percent = (Math.abs(found - given) / given * 100).toFixed(1);
     assert.equal(change, +found === +given ? "±0" : (+found < +given ? "−" : "+") + percent);
     assert.match(await text(page, "#before-name"), /^Before: \d+\.\d mm, \d+ retractions, \d+ walls? crossed$/);
-    assert.match(await text(page, "#after-name"), /^After, auto: \d+\.\d mm \(−\d+\.\d %\), \d+ retractions, \d+ walls? crossed$/);
+    assert.match(await text(page, "#after-name"), /^After, ni2opt: \d+\.\d mm \(−\d+\.\d %\), \d+ retractions, \d+ walls? crossed$/);
     for (const id of ["before", "after"]) {
       for (const color of [START, END, TRAVEL]) assert.ok(await count(page, id, color) > 30, `${id} ${color}`);
     }
