@@ -87,7 +87,7 @@ class Files(unittest.TestCase):
                 self.connect(gateway.http_port, 300, source)
                 self.connect(gateway.metrics_port, 100, source)
             for i in range(4):
-                status, answer = self.ask_from("127.0.0.2", gateway, "/v1/gcode", PART)
+                status, answer = self.ask_from("127.0.0.2", gateway, "/v1/gcode?strategy=none", PART)
                 self.assertEqual(status, 200, (files, i, answer))
 
     def test_a_limit_that_is_lowered_later_holds_too(self):
@@ -95,18 +95,18 @@ class Files(unittest.TestCase):
         self.addCleanup(gateway.close)
         resource.prlimit(gateway.process.pid, resource.RLIMIT_NOFILE, (512, 512))
         self.connect(gateway.grpc_port, 600, "127.0.0.3")
-        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)
+        self.assertEqual(gateway.ask("POST", "/v1/gcode?strategy=none", PART)[0], 200)
 
     def test_jobs_that_are_kept_leave_files_to_others(self):
         gateway = self.few(256)
         answer = b""
         for i in range(1000):
-            _, _, answer = gateway.ask("POST", "/v1/jobs", PART, {"Idempotency-Key": str(i)})
+            _, _, answer = gateway.ask("POST", "/v1/jobs?strategy=none", PART, {"Idempotency-Key": str(i)})
             if b"this caller may have" in answer:
                 break
             time.sleep(0.02)  # for work under way
         self.assertIn(b"this caller may have 24 jobs now", answer)
-        for source, path, good in (("127.0.0.2", "/v1/jobs", 202), ("127.0.0.3", "/v1/gcode", 200)):
+        for source, path, good in (("127.0.0.2", "/v1/jobs?strategy=none", 202), ("127.0.0.3", "/v1/gcode?strategy=none", 200)):
             status, answer = self.ask_from(source, gateway, path, PART)
             self.assertEqual(status, good, answer)
 
