@@ -21,8 +21,8 @@ def environment(folder, package):
     """A fresh environment with the package and what Debian has of its needs."""
     python = folder / "bin/python"
     run("/usr/bin/python3", "-m", "venv", "--without-pip", "--system-site-packages", folder)
-    run("/usr/bin/python3", "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-build-isolation",
-        "--no-deps", package)
+    # Debian's pip, which is among what the environment has; `--python` would start it twice.
+    run(python, "-m", "pip", "install", "-q", "--no-index", "--no-build-isolation", "--no-deps", package)
     return python
 
 
