@@ -305,7 +305,8 @@ class Routes(CommandLine):
         self.assertRegex(said, r"began with known routes of (\d+) of \1 layers \((\d+) of \2 paths in them\)\n")
         self.assertEqual([layer["route"] for layer in json.loads(read(again))["layers"]],
                          [layer["route"] for layer in json.loads(read(earlier))["layers"]])
-        self.succeed("optimize", gcode, "--quiet", "--strategy=greedy", f"--start_from={earlier}", "-o", self.path("out.gcode"))
+        self.succeed("optimize", gcode, "--quiet", "--strategy=greedy", f"--start_from={earlier}",
+                     "-o", self.path("out.gcode"))
         self.succeed("verify", gcode, self.path("out.gcode"))
 
     def test_pictures_show_what_was_given_beside_what_was_begun_with(self):

@@ -77,8 +77,8 @@ class Patience(Sockets):
         connection.settimeout(60)
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
         connection.connect(("127.0.0.1", gateway.http_port))
-        connection.sendall(b"POST /v1/gcode?strategy=greedy HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body))
-        connection.sendall(body)
+        connection.sendall(b"POST /v1/gcode?strategy=greedy HTTP/1.1\r\nHost: x\r\n"
+                           b"Content-Length: %d\r\n\r\n" % len(body) + body)
         connection.recv(1000)
         try:
             for _ in range(100):  # a little all the time

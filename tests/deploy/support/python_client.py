@@ -24,7 +24,8 @@ def load():
         shutil.copytree(support.SOURCE / "client/python", work / "client/python")
         shutil.copytree(support.SOURCE / "proto", work / "proto")
         shutil.copy(support.SOURCE / "CMakeLists.txt", work)
-        support.run("/usr/bin/python3", "setup.py", "-q", "build", f"--build-lib={work / 'lib'}", cwd=work / "client/python")
+        support.run("/usr/bin/python3", "setup.py", "-q", "build", f"--build-lib={work / 'lib'}",
+                    cwd=work / "client/python")
         sys.path.insert(0, str(work / "lib"))
 
 
