@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/line_numbers.h"
+#include "client/gcode/verify/machine/text_lines.h"
 #include "client/gcode/verify/match/hidden_links.h"
 #include "client/gcode/verify/match/layer_shape.h"
 #include "client/gcode/verify/match/moved_gaps.h"
@@ -350,10 +351,10 @@ void Verifier::CheckText() {
                          "only one of the files begins with a byte order mark of UTF-8"});
   }
   // A file transfer may convert all line ends, but not some of them.
-  const uint32_t ends = is_.line_ends();
-  const bool one_kind = (ends & (ends - 1)) == 0 && (ends & VerifyMachine::kLoneReturn) == 0;
-  if (const uint32_t odd = ends & ~was_.line_ends(); odd != 0 && !one_kind) {
-    findings_.push_back({VerifyRule::kSamePrint, 0, is_.FirstLineWithEnds(odd), -1,
+  const uint32_t ends = is_.lines().ends();
+  const bool one_kind = (ends & (ends - 1)) == 0 && (ends & TextLines::kLoneReturn) == 0;
+  if (const uint32_t odd = ends & ~was_.lines().ends(); odd != 0 && !one_kind) {
+    findings_.push_back({VerifyRule::kSamePrint, 0, is_.lines().FirstWithEnds(odd), -1,
                          "some lines have line ends that no line of the original has"});
   }
 }

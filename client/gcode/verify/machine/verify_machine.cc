@@ -5,41 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/machine/extruder_mode.h"
 #include "client/gcode/verify/machine/object_labels.h"
 #include "client/gcode/verify/machine/told_progress.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
-
-// True if the E words of the first moves in the plane hardly add up to a register, and no line says
-// how they count: then they count from the move before.
-bool FallsAsOftenAsItRises(std::string_view text) {
-  for (const std::string_view mode : {"M82", "M83", "m82", "m83"}) {
-    for (size_t at = text.find(mode); at != std::string_view::npos; at = text.find(mode, at + 1)) {
-      size_t begin = at;
-      while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
-      if (begin == 0 || text[begin - 1] == '\n') return false;
-    }
-  }
-  double last = 0;
-  int rises = 0;
-  int falls = 0;
-  while (!text.empty() && rises + falls < 200) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    line = TrimLine(line.substr(0, line.find(';')));
-    const size_t e = line.find_first_of("Ee");
-    if (e == std::string_view::npos || UpperCase(line[0]) != 'G') continue;
-    double value = 0;
-    std::from_chars(line.data() + e + 1, line.data() + line.size(), value);
-    const bool sets = line.substr(1, 2) == "92";
-    if (!sets && line.find_first_of("XxYy") == std::string_view::npos) continue;
-    if (!sets) ++(value <= last ? falls : rises);
-    last = value;
-  }
-  return falls * 4 > rises;
-}
 
 // The next line without blanks around it; `rest` goes on behind it.
 std::string_view TrimmedLine(std::string_view& rest) {
@@ -63,60 +35,20 @@ void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micr
   motion_.was_retracted = retracted();
   motion_.has_center = false;
   motion_.center_x = motion_.center_y = motion_.radius = motion_.turns = 0;
-  moved_at_ = number_;
+  moved_at_ = lines_.number();
 }
 
-VerifyMachine::VerifyMachine(std::string_view text) : rest_(text) {
-  relative_e_ = FallsAsOftenAsItRises(text);
-}
+VerifyMachine::VerifyMachine(std::string_view text)
+    : lines_(text), relative_e_(CountsFromTheMoveBefore(text)) {}
 
 bool VerifyMachine::Next(VerifyLine& line) {
-  if (rest_.empty()) return false;
+  std::string_view text;
+  if (!lines_.Next(text)) return false;
   line = VerifyLine{};
-  line.number = ++number_;
-  line.text = TrimLine(TakeLine());
+  line.number = lines_.number();
+  line.text = TrimLine(text);
   if (!line.text.empty()) Do(line);
   return true;
-}
-
-// To firmware a carriage return ends a line, wherever it stands.
-std::string_view VerifyMachine::TakeLine() {
-  // Where carriage returns alone end lines, all of them are before one line feed.
-  if (line_feed_ == nullptr || line_feed_ < rest_.data()) {
-    line_feed_ = rest_.data() + std::min(rest_.find('\n'), rest_.size());
-  }
-  const auto end = static_cast<size_t>(line_feed_ - rest_.data());
-  std::string_view line = rest_.substr(0, end);
-  if (return_ == nullptr || return_ < rest_.data()) {
-    return_ = rest_.data() + std::min(rest_.find('\r'), rest_.size());
-  }
-  size_t returns = 0;
-  if (return_ < line_feed_) {
-    while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;
-    const auto inside = static_cast<size_t>(return_ - rest_.data());
-    if (inside < line.size() - returns) {
-      NoteEnd(kMostReturns + 1);
-      rest_.remove_prefix(inside + 1);
-      return line.substr(0, inside);
-    }
-  }
-  if (end < rest_.size()) NoteEnd(std::min(returns, kMostReturns));
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
-  return line;
-}
-
-void VerifyMachine::NoteEnd(size_t bit) {
-  if ((line_ends_ >> bit & 1u) == 0) first_with_end_[bit] = static_cast<uint32_t>(number_);
-  line_ends_ |= 1u << bit;
-}
-
-uint32_t VerifyMachine::FirstLineWithEnds(uint32_t ends) const {
-  uint32_t first = 0;
-  for (size_t bit = 0; bit < first_with_end_.size(); ++bit) {
-    if ((ends & line_ends_ & 1u << bit) == 0) continue;
-    if (first == 0 || first_with_end_[bit] < first) first = first_with_end_[bit];
-  }
-  return first;
 }
 
 void VerifyMachine::Fence(VerifyLine& line, LineRole role) {
@@ -235,7 +167,7 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     case 90:
     case 91:
       if (number == 91 && !relative_) {
-        if (const size_t lines = LinesOfLift(); lines > 0) last_of_lift_ = number_ + lines;
+        if (const size_t lines = LinesOfLift(); lines > 0) last_of_lift_ = lines_.number() + lines;
       }
       return Mode(relative_, number == 91, line);
     case 92:
@@ -267,7 +199,7 @@ bool VerifyMachine::StandsAside() const {
 
 bool VerifyMachine::DepositsBehind() const {
   constexpr size_t kMostLines = 16;
-  std::string_view rest = rest_;
+  std::string_view rest = lines_.rest();
   Nano e = e_;
   for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
     const std::string_view line = TrimmedLine(rest);
@@ -286,7 +218,7 @@ bool VerifyMachine::DepositsBehind() const {
 
 bool VerifyMachine::PullsBehind() const {
   constexpr size_t kMostLines = 8;
-  std::string_view rest = rest_;
+  std::string_view rest = lines_.rest();
   for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
     const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return false;
@@ -320,7 +252,7 @@ void VerifyMachine::SetPosition(const CommandWords& words, VerifyLine& line) {
 
 size_t VerifyMachine::LinesOfLift() const {
   constexpr size_t kMostLines = 8;
-  std::string_view rest = rest_;
+  std::string_view rest = lines_.rest();
   bool lifts = false;
   bool ended = false;
   for (size_t lines = 0; lines < kMostLines; ++lines) {
@@ -345,7 +277,7 @@ size_t VerifyMachine::LinesOfLift() const {
 // Behind M622: all lines up to M623 are pictures, notes or comments.
 bool VerifyMachine::ConditionOnlyTells() const {
   constexpr size_t kMostLines = 16;
-  std::string_view rest = rest_;
+  std::string_view rest = lines_.rest();
   for (size_t i = 0; i < kMostLines && !rest.empty(); ++i) {
     const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return false;

@@ -15,6 +15,7 @@
 
 #include "client/gcode/verify/machine/command_words.h"
 #include "client/gcode/verify/machine/print_settings.h"
+#include "client/gcode/verify/machine/text_lines.h"
 
 namespace traverse::gcode {
 
@@ -82,7 +83,7 @@ class VerifyMachine {
 
   // REQUIRES: the last line moves, or stays.
   const Motion& motion() const {
-    assert(moved_at_ == number_);
+    assert(moved_at_ == lines_.number());
     return motion_;
   }
 
@@ -95,19 +96,11 @@ class VerifyMachine {
 
   uint64_t fan() const { return settings_.fan(); }
 
-  // Which line ends there were so far: bit n for LF behind n carriage returns, and kLoneReturn.
-  uint32_t line_ends() const { return line_ends_; }
-  static constexpr size_t kMostReturns = 3;
-
-  // The first line that ends in one of these ways; 0 if there is none.
-  uint32_t FirstLineWithEnds(uint32_t ends) const;
-  static constexpr uint32_t kLoneReturn = 1u << (kMostReturns + 1);
+  const TextLines& lines() const { return lines_; }  // taken so far
 
   static constexpr Micro kSlack = 100;  // of filament that rounding may lose
 
  private:
-  std::string_view TakeLine();
-  void NoteEnd(size_t bit);
   void Do(VerifyLine& line);
   void DoComment(VerifyLine& line);
   void DoG(int number, VerifyLine& line);
@@ -129,22 +122,17 @@ class VerifyMachine {
   bool DepositsBehind() const;  // the next line that leads sideways
   bool StandsAside() const;     // away from what was deposited last
   void Wait(Micro milliseconds, VerifyLine& line);
-  bool InLift() const { return number_ <= last_of_lift_; }
+  bool InLift() const { return lines_.number() <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
   void Heat(int number, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
-  std::string_view rest_;
-  const char* line_feed_ = nullptr;  // the next one, or the end
-  const char* return_ = nullptr;     // the same of carriage returns
-  size_t number_ = 0;
+  TextLines lines_;
   size_t moved_at_ = 0;        // the line of motion_
   bool pulls_ = false;         // the line moves filament alone
   bool waits_ = false;         // the command before it did, or what stands before waiting
   size_t last_of_lift_ = 0;    // the line behind a lift in relative mode
   bool in_condition_ = false;  // of M622, up to M623, with nothing in it that moves or sets
-  uint32_t line_ends_ = 0;
-  std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};
   std::array<Micro, 3> left_{};  // where it deposited last
   Nano e_ = 0;

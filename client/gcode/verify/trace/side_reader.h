@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "client/gcode/verify/machine/text_lines.h"
 #include "client/gcode/verify/sections.h"
 #include "client/gcode/verify/trace/trace.h"
 #include "client/gcode/verify/trace/tracer.h"
@@ -32,9 +33,8 @@ class SideReader {
 
   bool done() const { return done_; }
 
-  // VerifyMachine::line_ends of the text read so far.
-  uint32_t line_ends() const { return machine_.line_ends(); }
-  uint32_t FirstLineWithEnds(uint32_t ends) const { return machine_.FirstLineWithEnds(ends); }
+  // Read so far.
+  const TextLines& lines() const { return machine_.lines(); }
 
   // The sections read so far.
   const Sections& cut() const { return cutter_.cut(); }
