@@ -2,60 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <utility>
 
-#include "client/gcode/model/arc.h"
-
 namespace traverse::gcode {
 namespace {
-
-void NoteRetraction(const LinkStep& step, Decimal& retracted, Link& link) {
-  if (step.kind == StepKind::kFirmwareRetract) link.firmware = true;
-  retracted = std::max<Decimal>(retracted - step.filament, 0);
-  link.pulled = std::max(link.pulled, retracted);
-}
-
-LinkStep StepOf(const Step& step, const MachineState& after) {
-  LinkStep taken;
-  taken.kind = step.kind;
-  taken.line = step.line;
-  taken.from = step.from;
-  taken.to = after.at;
-  taken.filament = step.kind == StepKind::kSetE ? step.command.Value('E') : step.filament;
-  taken.e = after.e;
-  taken.feed = after.feed;
-  taken.slots = step.slots;
-  taken.arc = step.arc;
-  taken.relative = step.relative;
-  if (step.command.kind == LineKind::kCommand) taken.words = step.command.words;
-  if (IsXyMotion(step.kind)) {
-    taken.travel_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
-                               : std::hypot(ToDouble(after.at.x - step.from.x),
-                                            ToDouble(after.at.y - step.from.y));
-  }
-  return taken;
-}
-
-// How the travel proper comes to its height.
-void NoteLift(Link& link) {
-  for (const LinkStep& step : link.steps) {
-    if (step.kind == StepKind::kLift && step.feed > 0) link.lift_feed = step.feed;
-  }
-  if (link.arrival < 0) return;
-  const LinkStep& arrival = link.steps[static_cast<size_t>(link.arrival)];
-  const Decimal top = std::max(arrival.from.z, arrival.to.z);
-  link.lift = std::max<Decimal>(0, top - std::max(link.z_before, link.z_behind));
-  link.top = std::max(top, link.z_behind);
-  link.sinks = link.lift == 0 && arrival.to.z < arrival.from.z && arrival.to.z == link.z_behind;
-  for (size_t i = link.fixed; i <= static_cast<size_t>(link.arrival); ++i) {
-    const LinkStep& step = link.steps[i];
-    if (step.kind == StepKind::kTravel && step.to.z > step.from.z) link.ramp_mm += step.travel_mm;
-  }
-  link.ramp_ends = link.ramp_mm > 0 && arrival.to.z == arrival.from.z;
-}
 
 bool IsOfPull(const LinkStep& step) {
   return (step.kind == StepKind::kFilament && step.filament < 0) ||
@@ -118,13 +70,6 @@ bool StaysWithTravel(const LinkStep& step) {
          step.kind == StepKind::kSetE;
 }
 
-// The first `steps` of `link` stay, and leave `behind`.
-void Keep(size_t steps, const PartStart& behind, Link& link) {
-  link.fixed = steps;
-  link.behind_fixed = behind;
-  link.arrival = -1;
-}
-
 }  // namespace
 
 std::optional<Link> WithWipeOf(Link form, const Link& own) {
@@ -160,69 +105,6 @@ std::optional<Link> WithPullOf(const Link& link, const Link& own) {
   }
   out.wipes = pull.wipes;
   return out;
-}
-
-Link ReadLink(const GcodeFile& file, size_t index) {
-  assert(index < file.blocks.size());
-  if (index == 0) return {};
-  const Block& before = file.blocks[index - 1];
-  const Block& behind = file.blocks[index];
-  Link link;
-  link.z_before = before.last.z;
-  link.z_behind = behind.first.z;
-  link.layer_behind = std::max(behind.first.z, behind.last.z);
-  link.departs = MayDepart(file, index);
-  PartStart start = StartBehind(file, before);
-  Interpreter interpreter(std::string_view(file.text).substr(0, behind.begin), before.end,
-                          start.machine);
-  Decimal retracted = 0;
-  PrintState state = start.state;
-  bool marked = false;
-  const bool aside = (behind.link & kLinkAside) != 0;
-  // The steps up to the last travel, and what they leave behind.
-  size_t up_to_travel = 0;
-  PartStart behind_travel;
-  for (Step step; interpreter.Next(step);) {
-    LinkStep added = StepOf(step, interpreter.state());
-    marked = marked || added.kind == StepKind::kWipeMark;
-    // A wipe's pull may round to nothing.
-    if (added.kind == StepKind::kZeroExtrude) {
-      added.kind = step.retracted || marked ? StepKind::kWipe : StepKind::kTravel;
-    }
-    if (added.kind != StepKind::kSetE) NoteRetraction(added, retracted, link);
-    link.wipes = link.wipes || added.kind == StepKind::kWipe;
-    if (added.kind == StepKind::kSlot) {
-      ApplySetter(state, file.setters.Find(step.line.Text(file.text)), step.slots);
-    }
-    const bool travels_on = aside && added.kind == StepKind::kTravel;
-    if (travels_on && up_to_travel > link.fixed) {
-      Keep(up_to_travel, behind_travel, link);
-    }
-    // If CuraEngine primes before the last stretch of the travel, the travel proper ends there.
-    const bool behind_prime = link.retracts() && !step.retracted;
-    if (added.kind == StepKind::kTravel && (link.arrival < 0 || !behind_prime)) {
-      link.arrival = static_cast<int>(link.steps.size());
-      link.arrives_retracted = step.retracted;
-      link.travel_state = state;
-    }
-    link.steps.push_back(added);
-    if (travels_on) {
-      up_to_travel = link.steps.size();
-      behind_travel = {interpreter.state(), state};
-    }
-    const bool of_script = step.line.begin < file.script_end;
-    if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange || of_script) {
-      // Of so many lines that stay nothing matters but where they end.
-      if (link.steps.size() >= Interpreter::kMostOfLink) {
-        link.steps = {added};
-        link.departs = false;
-        up_to_travel = 0;
-      }
-      Keep(link.steps.size(), {interpreter.state(), state}, link);
-    }
-  }
-  NoteLift(link);
-  return link;
 }
 
 const LinkStep* GoingOnAlong(const Block& block, const Link& link) {
