@@ -106,10 +106,12 @@ Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
   if (CostIsTime(job, layer)) out.Append(TimeJson(result));
   out.Append({{"stop", StopName(result.stop_reason())}, {"solve_seconds", result.solve_seconds()}});
   // The statistics of the search, if it has any; sorted, because a proto map has no order.
+  JsonObject statistics;
   for (const auto& [name, value] :
        std::map<std::string, double>(result.statistics().begin(), result.statistics().end())) {
-    out["statistics"][name] = value;
+    statistics.push_back({name, value});
   }
+  if (!statistics.empty()) out["statistics"] = std::move(statistics);
   out["route"] = std::move(route);
   if (result.detours_size() > 0) out["detours"] = DetoursJson(result);
   return out;

@@ -36,10 +36,12 @@ Json ValueSchema(const FieldDescriptor& field, Json& schemas) {
       break;
   }
   const std::string& type = field.message_type()->full_name();
-  if (type == "google.protobuf.Timestamp")
+  if (type == "google.protobuf.Timestamp") {
     return JsonObject{{"type", "string"}, {"format", "date-time"}};
-  if (type == "google.protobuf.Duration")
+  }
+  if (type == "google.protobuf.Duration") {
     return JsonObject{{"type", "string"}, {"pattern", "^-?[0-9.]+s$"}};
+  }
   AddSchema(*field.message_type(), schemas);
   return JsonObject{{"$ref", "#/components/schemas/" + field.message_type()->name()}};
 }
