@@ -57,19 +57,13 @@ const JsonArray& Json::items() const {
   assert(is_array());
   return *std::get_if<JsonArray>(&value_);
 }
-JsonArray& Json::items() {
-  assert(is_array());
-  return *std::get_if<JsonArray>(&value_);
-}
+JsonArray& Json::items() { return const_cast<JsonArray&>(std::as_const(*this).items()); }
 
 const JsonObject& Json::members() const {
   assert(is_object());
   return *std::get_if<JsonObject>(&value_);
 }
-JsonObject& Json::members() {
-  assert(is_object());
-  return *std::get_if<JsonObject>(&value_);
-}
+JsonObject& Json::members() { return const_cast<JsonObject&>(std::as_const(*this).members()); }
 
 const Json* Json::Find(std::string_view name) const {
   if (!is_object()) return nullptr;

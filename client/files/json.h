@@ -88,6 +88,12 @@ struct JsonMember {
   Json value;
 };
 
+// Null if there is no value.
+template <typename T>
+Json JsonOrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
 // `json` in one line, or with `indent` spaces a level. Names of files may be any bytes, and JSON is
 // UTF-8: what is none comes out as U+FFFD. A number that is not finite comes out as null.
 std::string JsonText(const Json& json, int indent = -1);

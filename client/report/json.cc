@@ -64,8 +64,6 @@ std::optional<double> BoundOf(const InputJob& job, const v1::Layer& layer,
   return result.lower_bound();
 }
 
-Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
-
 // What is paid where the cost is time, of a layer's result or of a job's summary.
 template <typename Result>
 JsonObject TimeJson(const Result& result) {
@@ -102,7 +100,7 @@ Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
                         {"start", JsonArray{result.start().x_mm(), result.start().y_mm()}},
                         {"travel_given_mm", result.given().total_mm()},
                         {"travel_mm", result.travel().total_mm()},
-                        {"lower_bound_mm", OrNull(BoundOf(job, layer, result))}};
+                        {"lower_bound_mm", JsonOrNull(BoundOf(job, layer, result))}};
   if (CostIsTime(job, layer)) out.Append(TimeJson(result));
   out.Append({{"stop", StopName(result.stop_reason())}, {"solve_seconds", result.solve_seconds()}});
   // The statistics of the search, if it has any; sorted, because a proto map has no order.

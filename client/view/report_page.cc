@@ -17,11 +17,6 @@
 namespace traverse::view {
 namespace {
 
-template <typename T>
-Json OrNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
 // Files state three digits, so three are enough.
 double Rounded(double value) { return std::round(value * 1000) / 1000; }
 
@@ -41,10 +36,10 @@ Json RouteJson(const RouteNotes& route) {
   return JsonObject{{"label", ValidUtf8(route.label)},
                     {"travel", Rounded(route.total.travel_mm)},
                     {"seconds", Rounded(route.total.seconds)},
-                    {"retractions", OrNull(route.total.retractions)},
-                    {"hidden", OrNull(route.total.hidden_retractions)},
-                    {"crossings", OrNull(route.total.crossings)},
-                    {"gap", OrNull(route.gap)},
+                    {"retractions", JsonOrNull(route.total.retractions)},
+                    {"hidden", JsonOrNull(route.total.hidden_retractions)},
+                    {"crossings", JsonOrNull(route.total.crossings)},
+                    {"gap", JsonOrNull(route.gap)},
                     {"compute", Rounded(route.compute_seconds)},
                     {"layers", JsonObject{{"travel", std::move(travel)},
                                           {"retractions", LayersJson(route, &Figures::retractions)},
