@@ -288,10 +288,13 @@ class LayerChooser::Impl {
     if (!AnyShortRest(rests_, columns_)) return;
     std::vector<TurnedLayer> turned(columns_.size());
     ParallelFor(columns_.size(), threads_, [&](size_t layer) { turned[layer] = TurnsOf(layer); });
+    std::vector<std::optional<uint32_t>> added(columns_.size());
     for (const double crossing_seconds : kCrossingSeconds) {
       const auto row = RestedRow(rests_, turned, crossing_seconds);
       ParallelFor(columns_.size(), threads_, [&](size_t layer) {
-        if (row[layer]) AddTurned(layer, turned[layer].turns, *row[layer]);
+        if (!row[layer] || row[layer] == added[layer]) return;
+        AddTurned(layer, turned[layer].turns, *row[layer]);
+        added[layer] = row[layer];
       });
     }
   }
