@@ -61,20 +61,25 @@ class FastSearch {
     rules.policy = Policy::kFast;
     rules.as_many_retractions = !hides;
     rules.freedom = FreedomOf(file_, of_file, Policy::kFast, allow_);
-    rules.polish = PolishLimit{};
+    rules.polish = PolishLimit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};
     rules.boundaries = BoundariesOf(file_, of_file);
     // Where whole objects have changed places, the file's own order begins it.
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);
     const bool moved = !std::is_sorted(places.begin(), places.end());
     const LayerOrder& begun = moved ? column.given_order() : chosen;
-    Seconds seconds;
-    seconds.given = ForecastPaths(*column.writer, column.given_order());
-    seconds.fast = std::min(seconds.given, ForecastPaths(writer, column.given_order()));
-    for (const LayerOrder& order : MergedOrders(writer, begun, rules)) {
-      seconds.fast = std::min(seconds.fast, ForecastPaths(writer, order));
-    }
-    return seconds;
+    LayerOrder best = column.given_order();
+    double least = ForecastPaths(writer, best);
+    const auto take = [&](LayerOrder order) {
+      const double seconds = ForecastPaths(writer, order);
+      if (seconds >= least) return;
+      least = seconds;
+      best = std::move(order);
+    };
+    for (LayerOrder& order : MergedOrders(writer, begun, rules)) take(std::move(order));
+    take(KickedOrder(writer, best, rules));
+    const double given = ForecastPaths(*column.writer, column.given_order());
+    return {given, std::min(given, least)};
   }
 
  private:

@@ -30,10 +30,8 @@ bool KnownTravels::IsRefused(const Placement& from, const Placement& to) const {
   return rules_.refused != nullptr && rules_.refused->contains({from, to});
 }
 
-void KnownTravels::MoveObjects() { moved_ = !rules_.places.empty(); }
-
 TravelTotals KnownTravels::operator()(size_t place, const Placement& from, const Placement& to) {
-  if (moved_) place = rules_.places[place];
+  if (!places_.empty()) place = places_[place];
   // Where something stands in the file, the travel depends on what that is.
   const bool boundary = rules_.boundaries[place];
   const size_t next = to.block - given_.front().block;

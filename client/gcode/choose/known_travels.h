@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
@@ -27,8 +28,8 @@ class KnownTravels {
   // The rules refuse that link.
   bool IsRefused(const Placement& from, const Placement& to) const;
 
-  // From now on the orders asked about have objects in other places than the file.
-  void MoveObjects();
+  // From now on the orders asked about have these LayerWriter::PlacesOf.
+  void SetPlaces(std::vector<uint32_t> places) { places_ = std::move(places); }
 
   // See TravelEstimate.
   TravelTotals operator()(size_t place, const Placement& from, const Placement& to);
@@ -53,7 +54,7 @@ class KnownTravels {
   std::vector<uint32_t> numbers_;            // [path] the number of its first placement
   std::vector<TravelTotals> given_travels_;  // [place] as the layer was given
   double longest_open_mm_ = 0;               // of them
-  bool moved_ = false;
+  std::vector<uint32_t> places_;             // [place] of the file; empty: the same
   absl::flat_hash_map<Key, TravelTotals> known_;
 };
 

@@ -66,7 +66,11 @@ class LayerChooser::Impl {
   ChosenLayers Choose() {
     Repair();
     ChooseRow();
-    if (!std::exchange(spared_, true) && SpareRetractions()) ChooseRow();
+    if (polish_ && !std::exchange(polished_, true)) {
+      KickChosen();
+      ChooseRow();
+      if (SpareRetractions()) ChooseRow();
+    }
     return Write();
   }
 
@@ -156,6 +160,26 @@ class LayerChooser::Impl {
     return FreedomOf(file_, file_.layers[layer], policy_, allow_);
   }
 
+  // The search found an order for layer `layer` besides the file's own.
+  bool AnyFound(size_t layer) const {
+    return !found_.empty() && !found_[layer].empty() &&
+           found_[layer] != columns_[layer].given_order();
+  }
+
+  // What was chosen, improved as far as it is worth it: nothing else is, for that takes long.
+  void KickChosen() {
+    std::vector<size_t> layers;
+    for (size_t layer = 0; layer < columns_.size(); ++layer) {
+      if (AnyFound(layer) || columns_[layer].chosen != 0) layers.push_back(layer);
+    }
+    ParallelFor(layers.size(), threads_, [&](size_t i) {
+      LayerColumn& column = columns_[layers[i]];
+      const LayerOrder chosen = Chosen(layers[i]).order;
+      filler_.Add(KickedOrder(*column.writer, chosen, RulesOf(layers[i])), layers[i], column);
+    });
+    FillTravelsAround(layers);
+  }
+
   // Where the file would retract more often than before, gives the layers that do so other orders
   // to choose from. True if there are such layers.
   bool SpareRetractions() {
@@ -168,7 +192,7 @@ class LayerChooser::Impl {
       more += totals.Whole(before, chosen).retractions - totals.Whole(0, 0).retractions;
       if (totals.inside[chosen].retractions > totals.inside[0].retractions) layers.push_back(layer);
     }
-    if (!polish_ || more <= 0 || layers.empty()) return false;
+    if (more <= 0 || layers.empty()) return false;
     ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
     FillTravelsAround(layers);
     return true;
@@ -204,7 +228,6 @@ class LayerChooser::Impl {
     if (refusals.inside) {
       MergeRules rules = RulesOf(layer);
       rules.refused = &refusals.links;
-      rules.places = column.writer->PlacesOf(*order);
       order = RepairedOrder(*column.writer, *order, rules, FreedomWithin(layer, rules),
                             refusals.Reach());
     }
@@ -219,10 +242,9 @@ class LayerChooser::Impl {
 
   void AddSparing(size_t layer) {
     LayerColumn& column = columns_[layer];
-    MergeRules rules = RulesOf(layer);
+    const MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
     const LayerOrder& chosen = column.choices[column.chosen].order;
-    if (objects_.any()) rules.places = column.writer->PlacesOf(chosen);
     const auto orders = SparingOrders(*column.writer, chosen, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
@@ -240,12 +262,12 @@ class LayerChooser::Impl {
     }
     if (!objects_.any() || found_.empty() || found_[layer].empty()) return;
     const LayerFreedom freedom = FreedomWithin(layer, rules);
-    objects_.AddTo(layer, freedom, std::move(rules), filler_, column);
+    objects_.AddTo(layer, freedom, rules, filler_, column);
   }
 
   // The order found for layer `layer`, merged by `rules`.
   void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
-    if (found_.empty() || found_[layer].empty() || found_[layer] == column.given_order()) return;
+    if (!AnyFound(layer)) return;
     NoteBlocked(found_[layer], column);
     const auto orders = MergedOrders(*column.writer, found_[layer], rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
@@ -423,7 +445,7 @@ class LayerChooser::Impl {
   const ObjectOrders objects_;
   std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
-  bool spared_ = false;  // retractions were
+  bool polished_ = false;  // what was chosen first
 };
 
 LayerChooser::LayerChooser(const GcodeFile& file, const FileOrder& found,

@@ -82,14 +82,14 @@ class LayerMerge {
   using Effort = OrderPolisher::Effort;
 
   LayerMerge(const LayerWriter& writer, const MergeRules& rules)
-      : rules_(rules),
+      : writer_(writer),
+        rules_(rules),
         outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
         travels_(writer, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
-    travels_.MoveObjects();
     if (!rules.freedom) return;
     polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
@@ -103,26 +103,27 @@ class LayerMerge {
     std::vector<LayerOrder> merged;
     for (const LayerOrder& order : begun) {
       merged.push_back(Better(quick_, order, all, Effort::kSettle));
-      if (!EndsAlike(order, given_)) {
-        merged.push_back(Better(strict_, order, all, Effort::kKick));
-        continue;
-      }
       LayerOrder better = Better(strict_, order, all, Effort::kSettle);
-      if (Rank(better) < Rank(best_between)) best_between = std::move(better);
+      if (!EndsAlike(order, given_)) {
+        merged.push_back(std::move(better));
+      } else if (Rank(better) < Rank(best_between)) {
+        best_between = std::move(better);
+      }
     }
-    best_between = Better(strict_, best_between, {}, Effort::kKick);
     if (best_between != given_) merged.push_back(std::move(best_between));
     AddSparing(found, merged);
     return merged;
   }
 
-  LayerOrder Settle(const LayerOrder& order) const {
-    return Better(strict_, order, {}, Effort::kSettle);
+  LayerOrder Improve(const LayerOrder& order, Effort effort) {
+    StandAs(order);
+    return Better(strict_, order, {}, effort);
   }
 
   // `order` with no more retractions than the file's own; then with fewer at a price, which a
   // search that is at its limit of crossings may come to where it cannot come within the first.
-  std::vector<LayerOrder> Spare(const LayerOrder& order) const {
+  std::vector<LayerOrder> Spare(const LayerOrder& order) {
+    StandAs(order);
     MergeLimits few = LimitsOf(were_, rules_);
     MergeLimits priced = EndsAlike(order, given_) ? few : AnyCrossings(few);
     few.retractions = were_.retractions;
@@ -198,6 +199,7 @@ class LayerMerge {
 
   // See RepairedOrder.
   std::optional<LayerOrder> Repair(LayerOrder order, const LayerFreedom& freedom, size_t reach) {
+    StandAs(order);
     size_t repairs = 0;
     for (size_t place = 1; place < order.size() && repairs < kMostRepairs; ++place) {
       if (!travels_.IsRefused(order[place - 1], order[place])) continue;
@@ -216,6 +218,9 @@ class LayerMerge {
   }
 
  private:
+  // `order` may have objects in other places than the file.
+  void StandAs(const LayerOrder& order) { travels_.SetPlaces(writer_.PlacesOf(order)); }
+
   Point BeginOf(const Placement& placement) const {
     const std::vector<Point>& points = outlines_[placement.block - given_.front().block].points;
     if (placement.closed) return points[placement.entry];
@@ -224,7 +229,6 @@ class LayerMerge {
 
   Point EndOf(const Placement& placement) const { return BeginOf(OrderState::Turned(placement)); }
 
-  // Kicks take long: only the orders that are the likeliest to be chosen are worth them.
   LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,
                     const std::vector<LayerOrder>& others, Effort effort) const {
     const LayerOrder merged = others.empty() ? order : judge.Merge(order, others);
@@ -244,10 +248,11 @@ class LayerMerge {
     if (!all_retract_more || rules_.as_many_retractions) return;
     MergeLimits sparing = LimitsOf(were_, rules_);
     sparing.retractions = were_.retractions;
-    LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, {found}, Effort::kKick);
+    LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, {found}, Effort::kSettle);
     if (order != given_) merged.push_back(std::move(order));
   }
 
+  const LayerWriter& writer_;
   const MergeRules& rules_;
   const std::vector<Outline>& outlines_;
   const LayerOrder given_;
@@ -301,10 +306,20 @@ LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
   return LayerMerge(writer, rules).SettleWithin(order, units);
 }
 
-LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,
-                        const MergeRules& rules) {
+std::vector<LayerOrder> SettledOrders(const LayerWriter& writer, std::vector<LayerOrder> orders,
+                                      const MergeRules& rules) {
+  LayerMerge merge(writer, rules);
+  for (LayerOrder& order : orders) {
+    if (!IsWhole(order, writer.GivenOrder())) continue;
+    order = merge.Improve(order, OrderPolisher::Effort::kSettle);
+  }
+  return orders;
+}
+
+LayerOrder KickedOrder(const LayerWriter& writer, const LayerOrder& order,
+                       const MergeRules& rules) {
   if (!IsWhole(order, writer.GivenOrder())) return order;
-  return LayerMerge(writer, rules).Settle(order);
+  return LayerMerge(writer, rules).Improve(order, OrderPolisher::Effort::kKick);
 }
 
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,

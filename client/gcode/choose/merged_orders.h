@@ -26,9 +26,6 @@ struct MergeRules {
   // [place] the file has something here that nothing may cross.
   std::vector<bool> boundaries;
 
-  // [place of an order] LayerWriter::PlacesOf it; empty for an order without moved objects.
-  std::vector<uint32_t> places = {};
-
   // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
   // and for how long. Either both are set or none.
   std::optional<LayerFreedom> freedom = {};
@@ -75,10 +72,14 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
 LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
                          const MergeRules& rules, const std::vector<uint32_t>& units);
 
-// `order`, in which whole objects have changed places, improved within each of them.
-// REQUIRES: rules.freedom, rules.polish, rules.places.
-LayerOrder SettledOrder(const LayerWriter& writer, const LayerOrder& order,
-                        const MergeRules& rules);
+// `orders`, in which whole objects have changed places, improved within each of them.
+// REQUIRES: rules.freedom, rules.polish.
+std::vector<LayerOrder> SettledOrders(const LayerWriter& writer, std::vector<LayerOrder> orders,
+                                      const MergeRules& rules);
+
+// `order` improved with kicks (order_polish.h), which take long: for the one that was chosen. Its
+// first and last path stay. REQUIRES: rules.freedom, rules.polish.
+LayerOrder KickedOrder(const LayerWriter& writer, const LayerOrder& order, const MergeRules& rules);
 
 }  // namespace traverse::gcode
 

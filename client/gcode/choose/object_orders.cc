@@ -310,7 +310,7 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
   return moved;
 }
 
-void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, MergeRules rules,
+void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, const MergeRules& rules,
                          const ColumnFiller& filler, LayerColumn& column) const {
   assert(any());
   constexpr size_t kBests = 2;
@@ -323,10 +323,8 @@ void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, MergeRules r
       moved.push_back(std::move(order));
     }
   }
-  for (const LayerOrder& order : moved) {
-    rules.places = column.writer->PlacesOf(order);
-    filler.Add(rules.polish ? SettledOrder(*column.writer, order, rules) : order, layer, column);
-  }
+  if (rules.polish) moved = SettledOrders(*column.writer, std::move(moved), rules);
+  for (const LayerOrder& order : moved) filler.Add(order, layer, column);
 }
 
 }  // namespace traverse::gcode

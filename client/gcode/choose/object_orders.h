@@ -59,7 +59,7 @@ class ObjectOrders {
 
   // Adds the file's order and the best of the others of layer `layer`, with objects in other
   // places, improved if `rules` say how. `freedom` is that of the layer. REQUIRES: any().
-  void AddTo(size_t layer, const LayerFreedom& freedom, MergeRules rules,
+  void AddTo(size_t layer, const LayerFreedom& freedom, const MergeRules& rules,
              const ColumnFiller& filler, LayerColumn& column) const;
 
  private:

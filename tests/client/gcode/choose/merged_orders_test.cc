@@ -6,10 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/str_format.h"
+#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/machine/motion_planner.h"
+#include "client/gcode/read/reader.h"
 #include "client/gcode/write/layer_writer.h"
 #include "tests/client/gcode/support/sketch.h"
 
@@ -267,6 +272,39 @@ TEST_F(MergedOrdersTest, SparingOrdersRetractLess) {
   ASSERT_GT(retractions(often), given);
   ASSERT_FALSE(sparing.empty());
   for (const LayerOrder& order : sparing) EXPECT_LE(retractions(order), given);
+}
+
+// What is known of the travel in one order holds in the next, whose objects stand elsewhere: the
+// head waits between objects.
+TEST_F(MergedOrdersTest, TravelIsKnownWhereverObjectsStand) {
+  std::string text = "M83\nG1 Z.2 F9000\n";
+  for (const auto& [object, lines] : {std::pair(0, 6), {2, 3}, {1, 8}, {3, 4}}) {
+    text += absl::StrFormat("EXCLUDE_OBJECT_START NAME=part_%d\n", object);
+    for (int y = 0; y < lines; ++y) {
+      text += absl::StrFormat("G1 X%d Y%d F9000\n;TYPE:Internal infill\nG1 X%d F1200 E.5\n",
+                              40 * object, 5 * y, 40 * object + 10);
+    }
+    text += absl::StrFormat("EXCLUDE_OBJECT_END NAME=part_%d\nG4 P%d\n", object, 500 + object);
+  }
+  const std::shared_ptr<GcodeFile> file = *ReadGcode(text, "part.gcode");
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  MergeRules rules;
+  rules.boundaries = BoundariesOf(*file, file->layers[0]);
+  const LayerOrder given = writer.GivenOrder();
+  LayerOrder moved = given;
+  std::rotate(moved.begin() + 6, moved.begin() + 9, moved.begin() + 17);
+  KnownTravels travels(writer, rules);
+  for (const LayerOrder& order : {given, moved, given}) {
+    const std::vector<uint32_t> places = writer.PlacesOf(order);
+    travels.SetPlaces(places);
+    for (size_t i = 1; i < order.size(); ++i) {
+      EXPECT_DOUBLE_EQ(travels(i, order[i - 1], order[i]).seconds,
+                       writer.EstimateTravel(places[i], order[i - 1], order[i]).seconds)
+          << i;
+    }
+  }
 }
 
 }  // namespace
