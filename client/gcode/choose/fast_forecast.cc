@@ -10,7 +10,6 @@
 
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/hidden/hidden_moves.h"
-#include "client/gcode/plan/layer_freedom.h"
 
 namespace traverse::gcode {
 namespace {
@@ -57,12 +56,10 @@ class FastSearch {
     const Layer& of_file = file_.layers[layer];
     const bool hides = std::abs(column.totals.inside[0].extra_mm) <= kLeastPushedMm;
     const LayerWriter writer(file_, of_file, habit_, donors_, room_.Of(layer), hides, &travel);
-    MergeRules rules;
-    rules.policy = Policy::kFast;
+    // As soon as fast itself gives up where it leads around walls: the rest changes little.
+    const PolishLimit limit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};
+    MergeRules rules = RulesUnder(file_, of_file, Policy::kFast, allow_, limit);
     rules.as_many_retractions = !hides;
-    rules.freedom = FreedomOf(file_, of_file, Policy::kFast, allow_);
-    rules.polish = PolishLimit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};
-    rules.boundaries = BoundariesOf(file_, of_file);
     // Where whole objects have changed places, the file's own order begins it.
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);

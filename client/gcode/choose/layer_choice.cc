@@ -140,17 +140,12 @@ class LayerChooser::Impl {
 
   // By which the orders of a layer are merged.
   MergeRules RulesOf(size_t layer) const {
-    const Layer& of_file = file_.layers[layer];
-    MergeRules rules;
-    rules.policy = policy_;
+    MergeRules rules = RulesUnder(file_, file_.layers[layer], policy_, allow_, polish_);
     rules.crossings = crossings_;
     rules.as_many_retractions = std::abs(columns_[layer].totals.inside[0].extra_mm) > kSlackMm;
-    if (polish_) {
-      rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
-      rules.polish = polish_;
-      if (habit_.avoids_walls) rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
+    if (polish_ && habit_.avoids_walls) {
+      rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
     }
-    rules.boundaries = BoundariesOf(file_, of_file);
     return rules;
   }
 
@@ -244,8 +239,7 @@ class LayerChooser::Impl {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
-    const LayerOrder& chosen = column.choices[column.chosen].order;
-    const auto orders = SparingOrders(*column.writer, chosen, rules);
+    const auto orders = SparingOrders(*column.writer, Chosen(layer).order, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 

@@ -84,7 +84,6 @@ class LayerMerge {
   LayerMerge(const LayerWriter& writer, const MergeRules& rules)
       : writer_(writer),
         rules_(rules),
-        outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
         travels_(writer, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
@@ -222,7 +221,8 @@ class LayerMerge {
   void StandAs(const LayerOrder& order) { travels_.SetPlaces(writer_.PlacesOf(order)); }
 
   Point BeginOf(const Placement& placement) const {
-    const std::vector<Point>& points = outlines_[placement.block - given_.front().block].points;
+    const size_t path = placement.block - given_.front().block;
+    const std::vector<Point>& points = writer_.outlines()[path].points;
     if (placement.closed) return points[placement.entry];
     return placement.as_given() ? points.front() : points.back();
   }
@@ -254,7 +254,6 @@ class LayerMerge {
 
   const LayerWriter& writer_;
   const MergeRules& rules_;
-  const std::vector<Outline>& outlines_;
   const LayerOrder given_;
   KnownTravels travels_;
   const TravelEstimate estimate_ = std::ref(travels_);
@@ -272,6 +271,16 @@ std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
     boundaries.push_back(IsBoundary(file.blocks[b]));
   }
   return boundaries;
+}
+
+MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
+                      const Allowance& allow, const std::optional<PolishLimit>& polish) {
+  MergeRules rules;
+  rules.policy = policy;
+  rules.boundaries = BoundariesOf(file, layer);
+  rules.polish = polish;
+  if (polish) rules.freedom = FreedomOf(file, layer, policy, allow);
+  return rules;
 }
 
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const LayerOrder& found,

@@ -38,6 +38,11 @@ struct MergeRules {
 // MergeRules::boundaries of `layer`.
 std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer);
 
+// The rules by which orders of `layer` are merged under `policy`, with what else `allow` allows;
+// with small changes if `polish` says for how long.
+MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
+                      const Allowance& allow, const std::optional<PolishLimit>& polish);
+
 // `found`, improved with runs of the file's own order, and brought within the limits of `rules` as
 // far as estimates tell (order_merge.h): in a few ways, of which only the best stays where it
 // begins and ends with the same paths as the file. Where IsFree(policy) it is also tried with its
