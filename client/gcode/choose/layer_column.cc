@@ -41,12 +41,13 @@ bool IsRefused(const LayerColumn& before, uint32_t from, const LayerColumn& colu
 
 }  // namespace
 
-double ForecastPaths(const LayerWriter& writer, const LayerOrder& order) {
+double ForecastPaths(const LayerWriter& writer, const LayerOrder& order, Hiding hiding) {
   double seconds = 0;
   LinkParts parts(writer.file());
   const std::vector<uint32_t> places = writer.PlacesOf(order);
   for (size_t place = 1; place < order.size(); ++place) {
-    seconds += writer.EstimateTravel(places[place], order[place - 1], order[place], parts).seconds;
+    const Placement& from = order[place - 1];
+    seconds += writer.EstimateTravel(places[place], from, order[place], parts, hiding).seconds;
   }
   return seconds;
 }
@@ -258,8 +259,7 @@ Forecast ForecastOf(const std::vector<LayerColumn>& columns) {
   Forecast forecast;
   for (size_t layer = 0; layer < columns.size(); ++layer) {
     const LayerColumn& column = columns[layer];
-    const LayerWriter& writer = *column.writer;
-    const double given = ForecastPaths(writer, column.given_order());
+    const double given = ForecastPaths(*column.writer, column.given_order(), Hiding::kNone);
     const LayerChoice& chosen = column.choices[column.chosen];
     forecast.given_seconds += given;
     forecast.seconds += column.chosen == 0 ? given : ForecastPaths(*chosen.writer, chosen.order);

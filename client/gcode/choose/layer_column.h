@@ -126,8 +126,10 @@ bool AnyShortRest(const IslandRests& rests, const std::vector<LayerColumn>& colu
 // out what was chosen for its layer; else for the layers below. True if there is such an island.
 bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns);
 
-// The seconds of the travel within a layer in `order`, as it is estimated.
-double ForecastPaths(const LayerWriter& writer, const LayerOrder& order);
+// The seconds of the travel within a layer in `order`, as it is estimated: as written, or with
+// what is hidden as sliced.
+double ForecastPaths(const LayerWriter& writer, const LayerOrder& order,
+                     Hiding hiding = Hiding::kBent);
 
 // Of all layers, with the measured travel moves to them.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns);

@@ -40,15 +40,17 @@ LinkForm LayerLinks::FormOf(const Placement& from, Point end, const Placement& t
 
 // No move at a boundary is hidden, and none beside a path during which the nozzle counts as closed:
 // to leave out what closes it does not open it.
-void LayerLinks::Hide(const Placement& from, const Placement& to, bool bends,
+void LayerLinks::Hide(const Placement& from, const Placement& to, Hiding hiding,
                       LinkForm& form) const {
-  if (!hides_ || !form.retracts || form.boundary || from.block < layer_.first_block) return;
+  if (!hides_ || hiding == Hiding::kNone || !form.retracts || form.boundary) return;
+  if (from.block < layer_.first_block) return;
   if (((file_.blocks[from.block].flags | file_.blocks[to.block].flags) & kBlockRetracted) != 0)
     return;
   if (rules_.Hides(departures_.Open(from), departures_.Begin(to), FeatureOf(to))) {
     return form.Hide(OpenTravel(from, to));
   }
-  std::vector<Point> around = bends ? HiddenBends(from, to) : std::vector<Point>();
+  if (hiding != Hiding::kBent) return;
+  std::vector<Point> around = HiddenBends(from, to);
   if (around.empty()) return;
   form.Hide(OpenTravel(from, to));
   form.travel.via = std::move(around);
@@ -77,7 +79,7 @@ bool LayerLinks::ChangesGiven() const {
     const Placement from{b - 1, 0, outlines_[b - 1 - layer_.first_block].closed};
     const Placement to{b, 0, outlines_[b - layer_.first_block].closed};
     LinkForm form = FormOf(from, departures_.End(from), to, b);
-    Hide(from, to, /*bends=*/true, form);
+    Hide(from, to, Hiding::kBent, form);
     if (form.hidden) return true;
   }
   return false;

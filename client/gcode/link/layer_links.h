@@ -22,6 +22,13 @@
 
 namespace traverse::gcode {
 
+// What becomes of retracted moves that nobody sees.
+enum class Hiding : uint8_t {
+  kNone,      // they stay
+  kStraight,  // those that are hidden as they lead do without
+  kBent,      // also those that bends hide, where that takes less time
+};
+
 // Thread-safe.
 class LayerLinks {
  public:
@@ -39,18 +46,16 @@ class LayerLinks {
   LinkForm FormOf(const Placement& from, Point end, const Placement& to, uint32_t place) const;
 
   // Leaves out of `form`, which links `from` and `to`, what is for those who see it, if nobody
-  // does. A move that is hidden only if it `bends` is led so where that takes less time than to
-  // retract. Orders are estimated without bends: a search that counted on them found no faster
-  // ones.
-  void Hide(const Placement& from, const Placement& to, bool bends, LinkForm& form) const;
+  // does.
+  void Hide(const Placement& from, const Placement& to, Hiding hiding, LinkForm& form) const;
 
   // Whether the file's own order is written otherwise than it is in the file.
   bool ChangesGiven() const;
 
-  // The travel to place `place` of the file's layer, from 1, if `to` follows `from` there, as it
-  // would be written, but for bends.
+  // The travel to place `place` of the file's layer, from 1, if `to` follows `from` there. Orders
+  // are searched for without bends: a search that counted on them found no faster ones.
   TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                              LinkParts& parts) const;
+                              LinkParts& parts, Hiding hiding = Hiding::kStraight) const;
 
  private:
   Feature FeatureOf(const Placement& path) const {

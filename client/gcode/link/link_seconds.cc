@@ -12,10 +12,10 @@
 namespace traverse::gcode {
 
 TravelTotals LayerLinks::EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                                        LinkParts& parts) const {
+                                        LinkParts& parts, Hiding hiding) const {
   const uint32_t here = layer_.first_block + static_cast<uint32_t>(place);
   LinkForm form = FormOf(from, departures_.End(from), to, here);
-  Hide(from, to, /*bends=*/false, form);
+  Hide(from, to, hiding, form);
   TravelTotals totals;
   PlannedTravel& travel = form.travel;
   double across_mm = travel.mm;

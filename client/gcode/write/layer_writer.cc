@@ -160,7 +160,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   }
   const Point end = file_.modes[to.block().mode].InMm(from.last());
   LinkForm form = links_.FormOf(from.placement(), end, to.placement(), place);
-  if (!as_sliced) links_.Hide(from.placement(), to.placement(), /*bends=*/true, form);
+  links_.Hide(from.placement(), to.placement(), as_sliced ? Hiding::kNone : Hiding::kBent, form);
   form.without_progress = !form.boundary || moved;
   PrintLink(LinkComposer(parts, donors_, from, to, form, out.at.machine).Compose(), out);
 }

@@ -73,8 +73,8 @@ class LayerWriter {
 
   // See LayerLinks.
   TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to,
-                              LinkParts& parts) const {
-    return links_.EstimateTravel(place, from, to, parts);
+                              LinkParts& parts, Hiding hiding = Hiding::kStraight) const {
+    return links_.EstimateTravel(place, from, to, parts, hiding);
   }
 
   // The same, asked once.

@@ -184,6 +184,21 @@ std::string Boxes() {
   return stack.Text();
 }
 
+// What was found to be saved is what the file as written saves, around walls too.
+TEST(ShownTravel, IsForecastAsItIsWritten) {
+  Stack slotted;
+  for (const double z : {0.2, 0.4, 0.6}) Slotted(slotted.Layer(z));
+  for (const std::string& text : {Boxes(), Slow(slotted.Text())}) {
+    RewriteOptions options;
+    options.policy = Policy::kFast;
+    const auto fast = RewriteGcode(*testing::Read(text), {}, options);
+    ASSERT_TRUE(fast.ok()) << fast.status();
+    const double saved = fast->before.seconds - fast->after.seconds;
+    ASSERT_GT(saved, 0.005 * fast->before.seconds);
+    EXPECT_NEAR((fast->forecast.given_seconds - fast->forecast.seconds) / saved, 1, 0.02);
+  }
+}
+
 // With E counted on from the beginning.
 std::string WithAbsoluteE(const std::string& text) {
   std::string out;
