@@ -65,18 +65,10 @@ class FastSearch {
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);
     const bool moved = !std::is_sorted(places.begin(), places.end());
     const LayerOrder& begun = moved ? column.given_order() : chosen;
-    LayerOrder best = column.given_order();
-    double least = ForecastPaths(writer, best);
-    const auto take = [&](LayerOrder order) {
-      const double seconds = ForecastPaths(writer, order);
-      if (seconds >= least) return;
-      least = seconds;
-      best = std::move(order);
-    };
-    for (LayerOrder& order : MergedOrders(writer, begun, rules)) take(std::move(order));
-    take(KickedOrder(writer, best, rules));
     const double given = ForecastPaths(*column.writer, column.given_order());
-    return {given, std::min(given, least)};
+    const double hidden = ForecastPaths(writer, column.given_order());
+    const double searched = ForecastPaths(writer, KickedOrder(writer, begun, rules));
+    return {given, std::min({given, hidden, searched})};
   }
 
  private:
