@@ -18,9 +18,6 @@
 namespace traverse::bench {
 namespace {
 
-// Rounding of sums of lengths.
-constexpr double kSlackMm = 1e-3;
-
 double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 double LinkSeconds(const GcodeFile& file, double total_seconds) {
@@ -32,15 +29,6 @@ double LinkSeconds(const GcodeFile& file, double total_seconds) {
         gcode::Measure(file, text.substr(block.begin, block.end - block.begin), start).seconds;
   }
   return total_seconds - along_paths;
-}
-
-int64_t LongerLayers(const std::vector<gcode::PrintTotals>& before,
-                     const std::vector<gcode::PrintTotals>& after) {
-  int64_t longer = 0;
-  for (size_t i = 0; i < before.size() && i < after.size(); ++i) {
-    longer += after[i].travel_mm > before[i].travel_mm + kSlackMm ? 1 : 0;
-  }
-  return longer;
 }
 
 std::string NameOf(const std::string& path) {
@@ -60,24 +48,10 @@ void MeasureResult(const GcodeFile& file, const std::string& text, CorpusRun& ru
     return;
   }
   const int threads = gcode::DefaultThreads();
-  const std::vector<gcode::PrintTotals> before = gcode::MeasureLayers(file, threads);
-  const std::vector<gcode::PrintTotals> after = gcode::MeasureLayers(**again, threads);
-  run.before = gcode::Sum(before);
-  run.after = gcode::Sum(after);
-  run.layers_longer = LongerLayers(before, after);
-  if (before.size() != after.size()) run.fault = "another number of layers";
+  run.before = gcode::Sum(gcode::MeasureLayers(file, threads));
+  run.after = gcode::Sum(gcode::MeasureLayers(**again, threads));
+  if (file.layers.size() != (*again)->layers.size()) run.fault = "another number of layers";
   run.link_seconds = LinkSeconds(file, run.before.seconds);
-}
-
-double FoundSeconds(const InputJob& job, const std::vector<v1::LayerResult>& found) {
-  double seconds = 0;
-  for (size_t i = 0; i < found.size(); ++i) {
-    const double price = job.layers[i].cost().time().crossing_seconds();
-    seconds += found[i].cost_given() - found[i].cost() -
-               price * (static_cast<double>(found[i].crossings_given()) -
-                        static_cast<double>(found[i].crossings()));
-  }
-  return seconds;
 }
 
 }  // namespace
@@ -106,7 +80,6 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
                    : file.slicer.name.substr(0, file.slicer.name.find_first_of(" _"));
   const absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
   if (!result.ok()) return result.status();
-  run.found_seconds = FoundSeconds(*job, result->layers);
   gcode::FileOrder found;
   for (size_t i = 0; i < result->layers.size(); ++i) {
     found.push_back(OrderOf(file, i, result->layers[i]));
@@ -122,6 +95,7 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
     run.fault = std::string(rewrite.status().message());
     return run;
   }
+  run.found_seconds = rewrite->forecast.given_seconds - rewrite->forecast.seconds;
   run.layers = rewrite->layers;
   run.layers_changed = rewrite->layers_changed;
   MeasureResult(file, rewrite->text, run);

@@ -24,14 +24,13 @@ struct CorpusRun {
   // saves more.
   double link_seconds = 0;
 
-  // What the first search says that its orders save of the order given, prices of crossings apart.
+  // What the chosen orders save as they are estimated.
   double found_seconds = 0;
 
   int64_t layers = 0;
   int64_t layers_changed = 0;
-  int64_t layers_longer = 0;  // whose travel, the travel to them included, is longer than before
-  std::string fault;          // why the result is not equivalent; empty: verified
-  double cpu_seconds = 0;     // of the whole, all threads
+  std::string fault;       // why the result is not equivalent; empty: verified
+  double cpu_seconds = 0;  // of the whole, all threads
 };
 
 // Percent by which `after` is less than `before`; negative if it is more.

@@ -36,14 +36,13 @@ double LinkTimeSaved(const CorpusRun& run) {
 std::string Row(const CorpusRun& run) {
   return absl::StrFormat(
       "| %s | %.2f | %.2f | %.1f %% | %d | %d | %d (%d) | %d (%d) | %.0f | %.0f | %.2f %% | %.1f "
-      "%% | %d of %d | %d | "
-      "%s "
+      "%% | %d of %d | %s "
       "|\n",
       run.file, run.before.travel_mm / 1000, run.after.travel_mm / 1000, TravelSaved(run),
       run.before.retractions, run.after.retractions, run.before.crossings,
       run.before.open_crossings, run.after.crossings, run.after.open_crossings, run.before.seconds,
       run.after.seconds, TimeSaved(run), LinkShare(run), run.layers_changed, run.layers,
-      run.layers_longer, run.fault.empty() ? "yes" : run.fault);
+      run.fault.empty() ? "yes" : run.fault);
 }
 
 std::string FoundAndWritten(const std::vector<CorpusRun>& runs) {
@@ -65,8 +64,8 @@ std::string FoundAndWritten(const std::vector<CorpusRun>& runs) {
 constexpr char kHead[] =
     "| file | travel m | after | less | retractions | after | crossings (open) | after | time s | "
     "after | less | links' share "
-    "of time | layers rewritten | longer | verified |\n"
-    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
+    "of time | layers rewritten | verified |\n"
+    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
 
 using Groups = std::map<std::pair<gcode::Policy, std::string>, std::vector<const CorpusRun*>>;
 
@@ -74,7 +73,7 @@ std::string Medians(const Groups& groups) {
   std::string text =
       "\nMedians over the files\n\n"
       "| policy | slicer | files | travel less | time less | of the links' time | slower files | "
-      "longer layers | not verified |\n|---|---|---:|---:|---:|---:|---:|---:|---:|\n";
+      "not verified |\n|---|---|---:|---:|---:|---:|---:|---:|\n";
   for (const auto& [key, group] : groups) {
     const auto median = [&group = group](const std::function<double(const CorpusRun&)>& of) {
       std::vector<double> values;
@@ -82,17 +81,15 @@ std::string Medians(const Groups& groups) {
       return Median(values);
     };
     int64_t slower = 0;
-    int64_t longer = 0;
     int64_t faults = 0;
     for (const CorpusRun* run : group) {
       slower += TimeSaved(*run) < -1e-6 ? 1 : 0;
-      longer += run->layers_longer;
       faults += run->fault.empty() ? 0 : 1;
     }
-    text += absl::StrFormat("| %s | %s | %d | %.1f %% | %.2f %% | %.1f %% | %d | %d | %d |\n",
+    text += absl::StrFormat("| %s | %s | %d | %.1f %% | %.2f %% | %.1f %% | %d | %d |\n",
                             std::string(PolicyName(key.first)), key.second, group.size(),
                             median(TravelSaved), median(TimeSaved), median(LinkTimeSaved), slower,
-                            longer, faults);
+                            faults);
   }
   return text;
 }
@@ -134,7 +131,6 @@ std::string CorpusJson(const std::vector<CorpusRun>& runs) {
                    {"found_seconds", run.found_seconds},
                    {"layers", run.layers},
                    {"layers_changed", run.layers_changed},
-                   {"layers_longer", run.layers_longer},
                    {"cpu_seconds", run.cpu_seconds}});
   }
   return all.dump(1) + "\n";

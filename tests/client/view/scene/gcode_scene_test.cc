@@ -134,7 +134,8 @@ TEST(DrawnGcode, TravelIsRetractedOpenOrHidden) {
 
   const auto forms = [&](size_t layer, size_t route) {
     std::vector<DrawnForm> of_route;
-    for (const DrawnVisit& visit : scene->layer(layer).routes[route].visits) {
+    const DrawnLayer drawn = scene->layer(layer);
+    for (const DrawnVisit& visit : drawn.routes[route].visits) {
       of_route.push_back(visit.form);
     }
     return of_route;
