@@ -639,10 +639,26 @@ def wiped(side):
     return sum(1 for a, b in zip(moves, moves[1:]) if a.e < 0 < a.length and not (b.e < 0 < b.length))
 
 
+def layer_ends(side):
+    """(layers, those of them that are left with a wipe)."""
+    count, with_wipe, height, wipes_since = 0, 0, None, False
+    for move in side.moves:
+        if move.deposits:
+            at = max(move.z0, move.z1)
+            if height is not None and abs(at - height) > 0.01:
+                count, with_wipe = count + 1, with_wipe + wipes_since
+            height, wipes_since = at, False
+        elif move.e < 0 < move.length:
+            wipes_since = True
+    return count, with_wipe
+
+
 def wipes(before, after, options):
-    """Paths that were wiped stay so, unless that is given away."""
+    """Paths that were wiped stay so, unless that is given away. A file that leaves its layers without a wipe leaves
+    them so whichever path is the last."""
     old, new = wiped(before), wiped(after)
-    if options.keeps_wipes and new < 0.98 * old - 1:
+    layers, with_wipe = layer_ends(before)
+    if options.keeps_wipes and new < 0.98 * old - 1 - (layers if with_wipe == 0 else 0):
         yield f"wipes: {old} wipes that pull filament back along a path became {new}"
 
 

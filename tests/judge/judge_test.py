@@ -375,6 +375,19 @@ class Checks(unittest.TestCase):
 
         self.assertIn("wipes", faults(before, [line.replace("G1 X15 Y10 E-.8", "G1 E-.8") for line in before]))
 
+    def test_wipes_may_go_where_layers_are_left_without(self):
+        plain, next_one = ["G1 E-.8 F2100"], ["G1 X40 Y40 F9000", "G1 E.8"]
+        wipe = ["G1 X15 Y10 E-.8"]
+        here, there = block(10, 0.2), block(20, 0.2)
+        first, last = here + wipe + next_one, there + plain + next_one
+        exchanged = there + plain + next_one, here + plain + next_one
+        more = [layer(round(0.2 * i, 1), first, last) for i in range(1, 6)]
+        less = [layer(round(0.2 * i, 1), *exchanged) for i in range(1, 6)]
+        ends_wiped = [layer(round(0.2 * i, 1), last, first) for i in range(1, 6)]
+
+        self.assertNotIn("wipes", faults(HEAD + sum(more, []), HEAD + sum(less, [])))
+        self.assertIn("wipes", faults(HEAD + sum(ends_wiped, []), HEAD + sum(less, [])))
+
     def test_words_without_a_reason_are_found(self):
         held = "nothing to gain, the G-code stays unchanged: travel 1.00 -> 1.00 m"
         self.assertEqual(list(judge.reasons(held + "\n12 paths in 3 layers stay beside commands")), [])
