@@ -146,22 +146,16 @@ SCRIPTS = {
 BESIDE = {"waits": "G4 P20", "finishes": "M400", "states_modes": "G90", "polls": "M105"}
 
 
-def behind_marks(lines, script):
-    for line in lines:
-        yield line
-        if MARK.match(line):
-            yield from script
-
-
-def behind_rises(lines, script):
-    """Where some slicers have led the head to its path already: a script that leads it away leads it back."""
+def between_layers(lines, script, at_rises):
+    """Behind each mark, or behind the rise that follows. A script that leads the head away leads it back: some slicers
+    have led it to its path already."""
     due, last = False, {}
     for line in lines:
         yield line
         if MOVE.match(line):
             last.update(re.findall(rf"([XYF]){NUMBER}", code_and_comment(line)[0]))
         due = due or bool(MARK.match(line))
-        if due and re.match(r"G[01] .*Z", line):
+        if due and (not at_rises or re.match(r"G[01] .*Z", line)):
             due = False
             yield from script
             if any("X" in moved for moved in script) and {"X", "Y", "F"} <= last.keys():
@@ -185,8 +179,8 @@ def variants(lines):
     for name, script in SCRIPTS.items():
         if not states(lines, "M83") and any(" E" in line for line in script):
             continue
-        yield f"{name}_at_marks", list(behind_marks(lines, script))
-        yield f"{name}_at_rises", list(behind_rises(lines, script))
+        yield f"{name}_at_marks", list(between_layers(lines, script, at_rises=False))
+        yield f"{name}_at_rises", list(between_layers(lines, script, at_rises=True))
     for name, line in BESIDE.items():
         yield name, list(beside_pulls(lines, line))
 
