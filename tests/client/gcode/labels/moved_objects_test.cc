@@ -62,6 +62,9 @@ std::string Broken(const std::string& was, const std::string& is) {
 
 Notation Klipper() { return Notations()[1]; }
 
+constexpr char kUnknownAndPicture[] =
+    "ON_LAYER_CHANGE\nG1 E-.8 F2100\nTIMELAPSE_TAKE_FRAME\nG1 E.8 F2100\n";
+
 // The pillar of a line that deposits: by its place.
 int PillarAt(const std::string& line) {
   double x = 0;
@@ -134,6 +137,20 @@ TEST(MovedObjects, TakeWhatStandsAtTheirLabelsAlong) {
   const GcodeRewrite rewrite = Optimised(Text(print, Klipper()));
   EXPECT_LT(Share(rewrite), 0.9) << rewrite.unproven;
   EXPECT_TRUE(LabelledRight(rewrite.text, Klipper()));
+}
+
+// Of those of a layer, too, behind which another object begins.
+TEST(MovedObjects, LeaveUnknownLinesWhereTheyAre) {
+  for (const Notation& notation : Notations()) {
+    for (const Policy policy : {Policy::kSafe, Policy::kFree, Policy::kFast}) {
+      PillarPrint print;
+      print.before_layer = kUnknownAndPicture;
+      const GcodeRewrite rewrite = Optimised(Text(print, notation), policy);
+      EXPECT_LT(Share(rewrite), 0.95) << notation.name << " " << rewrite.unproven;
+      EXPECT_EQ(rewrite.layers_unproven, 0) << notation.name << " " << rewrite.unproven;
+      EXPECT_TRUE(LabelledRight(rewrite.text, notation)) << notation.name;
+    }
+  }
 }
 
 // Whichever object stood there in the file.
@@ -305,6 +322,24 @@ TEST(VerifyMovedObjects, NothingPassesATemperature) {
   print.between = "M104 S210\nM104 S215\n";
   const std::string text = Text(print, Klipper());
   EXPECT_NE(Broken(text, WithLayer(text, 3, {1, 0, 2, 3})), "");
+}
+
+// Travel behind them is that of the place, not of the object.
+TEST(VerifyMovedObjects, WhatIsBehindUnknownLinesStaysThere) {
+  PillarPrint print;
+  print.before_layer = kUnknownAndPicture;
+  const std::string text = Text(print, Klipper());
+  const std::string moved = WithLayer(text, 3, {1, 0, 2, 3});
+  EXPECT_EQ(Broken(text, moved), "");
+  const size_t layer = moved.find(";Z:0.6");
+  for (const auto& [from, to] : {std::pair("G1 E-.8 F2100\nT", "G1 E-.8 F1200\nT"),
+                                 std::pair("G1 E-.8 F2100\nT", "G1 E-.9 F2100\nT"),
+                                 std::pair("G1 Z0.6 F9000", "G1 Z0.6 F600")}) {
+    std::string other = moved;
+    const size_t at = other.find(from, layer);
+    ASSERT_NE(at, std::string::npos) << from;
+    EXPECT_NE(Broken(text, other.replace(at, std::string(from).size(), to)), "") << to;
+  }
 }
 
 // Each object was looked for among all others.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -98,14 +99,34 @@ bool AreAlikeBehindScripts(const TravelStep& a, const TravelStep& b) {
   return a.Like(b) && (still || a.acceleration == b.acceleration);
 }
 
+// The paths of the original that begin behind unknown lines, and those of the optimised file in
+// their places. Such lines stay where they are, also between objects that have changed places.
+std::vector<std::pair<uint32_t, uint32_t>> PathsBehindScripts(const LayerPair& layer) {
+  std::vector<uint32_t> were;
+  std::vector<uint32_t> are;
+  std::vector<std::pair<uint32_t, uint32_t>> of_sections;
+  for (size_t i = 0; i < layer.section_count(); ++i) {
+    const uint32_t was = layer.SectionWas(i).first_path;
+    const uint32_t is = layer.SectionIs(i).first_path;
+    if (layer.was().links[was].scripted) {
+      were.push_back(was);
+      of_sections.emplace_back(was, is);
+    }
+    if (layer.is().links[is].scripted) are.push_back(is);
+  }
+  if (were.size() != are.size()) return of_sections;
+  std::sort(were.begin(), were.end());
+  std::sort(are.begin(), are.end());
+  std::vector<std::pair<uint32_t, uint32_t>> pairs;
+  for (size_t i = 0; i < were.size(); ++i) pairs.emplace_back(were[i], are[i]);
+  return pairs;
+}
+
 }  // namespace
 
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
-  for (size_t i = 0; i < layer.section_count(); ++i) {
+  for (const auto& [was, is] : PathsBehindScripts(layer)) {
     if (layer.Ended()) return;
-    const uint32_t was = layer.SectionWas(i).first_path;
-    const uint32_t is = layer.SectionIs(i).first_path;
-    if (!layer.was().links[was].scripted) continue;
     const uint32_t before = layer.was().LineOf(layer.was().paths[was]);
     const uint32_t behind = layer.is().LineOf(layer.is().paths[is]);
     if (Winds(layer, was, is)) {
