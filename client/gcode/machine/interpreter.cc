@@ -11,8 +11,12 @@
 namespace traverse::gcode {
 namespace {
 
-// So many lines are looked at for how a lift or a wait goes on.
-constexpr int kMostAhead = 8;
+// So many commands are looked at for how a lift or a wait goes on.
+constexpr int kMostAhead = 16;
+
+// What waits so far from the paths on both sides waits for a script: beyond moves inwards, coasting
+// and wipes.
+constexpr double kAsideMm = 10;
 
 // kUnknown if it is none.
 StepKind KindOfMark(std::string_view line) {
@@ -353,6 +357,13 @@ bool Interpreter::LexAhead(Offset& next, Command& command) const {
   return true;
 }
 
+bool Interpreter::LexCommandAhead(Offset& next, Command& command) const {
+  while (LexAhead(next, command)) {
+    if (command.kind != LineKind::kBlank && command.kind != LineKind::kComment) return true;
+  }
+  return false;
+}
+
 Offset Interpreter::LiftsUntil(Offset next) const {
   constexpr uint32_t kOfLifts = Command::Bit('Z') | Command::Bit('F');
   Command command;
@@ -375,29 +386,35 @@ Offset Interpreter::LiftsUntil(Offset next) const {
 
 // Elsewhere the head was led aside by a script, which waits there.
 StepKind Interpreter::KindOfWait() const {
-  // Beyond moves inwards, coasting and wipes.
-  constexpr double kAsideMm = 10;
   const double aside_mm = Distance(state_.InMm(state_.at), state_.InMm(deposited_));
   const bool of_path = aside_mm <= kAsideMm || PrintsNext();
   return of_path && (behind_pull_ || PullsNext()) ? StepKind::kDwell : StepKind::kUnknown;
 }
 
 bool Interpreter::PrintsNext() const {
-  constexpr int kMostLines = 16;
   constexpr uint32_t kOfXy = Command::Bit('X') | Command::Bit('Y');
   Command command;
   Offset next = next_;
+  Position at = state_.at;
   Decimal e = state_.e;
-  for (int i = 0; i < kMostLines; ++i) {
+  const auto follow = [&](char letter, Decimal& axis) {
+    const Decimal from = state_.relative_xyz ? axis : 0;
+    if (command.Has(letter)) axis = from + command.Value(letter);
+  };
+  for (int i = 0; i < kMostAhead; ++i) {
     // The text of a link ends where its path begins.
-    if (!LexAhead(next, command)) return true;
+    if (!LexCommandAhead(next, command)) return true;
     const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
                        command.number >= 0 && command.number <= 3;
     const bool sets = command.Is('G', 92);
     if (!moves && !sets) continue;
     const bool filament = command.Has('E');
     if (moves && (command.words & kOfXy) != 0) {
-      return filament && command.Value('E') > (state_.RelativeE() ? 0 : e);
+      if (filament && command.Value('E') > (state_.RelativeE() ? 0 : e)) return true;
+      follow('X', at.x);
+      follow('Y', at.y);
+      if (Beyond(at.x) || Beyond(at.y)) return false;
+      if (Distance(state_.InMm(at), state_.InMm(state_.at)) > kAsideMm) return false;
     }
     if (filament) e = command.Value('E');
   }
@@ -407,9 +424,9 @@ bool Interpreter::PrintsNext() const {
 bool Interpreter::PullsNext() const {
   Command command;
   Offset next = next_;
-  for (int i = 0; i < kMostAhead && LexAhead(next, command); ++i) {
+  for (int i = 0; i < kMostAhead && LexCommandAhead(next, command); ++i) {
     if (command.kind == LineKind::kText) return false;
-    if (command.kind != LineKind::kCommand || command.Is('G', 4) || command.Is('M', 400)) continue;
+    if (command.Is('G', 4) || command.Is('M', 400)) continue;
     const bool bare = TrimBlanks(command.rest).empty();
     const bool moves = command.Is('G', 0) || command.Is('G', 1);
     // Slicers state the feed rate of a wipe on a line of its own.
@@ -425,14 +442,12 @@ bool Interpreter::PullsNext() const {
 }
 
 Offset Interpreter::ConditionUntil(Offset next) const {
-  constexpr int kMostLines = 16;
   Command command;
-  for (int i = 0; i < kMostLines && LexAhead(next, command); ++i) {
+  for (int i = 0; i < kMostAhead && LexCommandAhead(next, command); ++i) {
     if (command.Is('M', 623)) return next;
     const bool tells =
         command.kind == LineKind::kCommand && command.letter == 'M' && OnlyTells(command.number);
-    const bool says = command.kind == LineKind::kBlank || command.kind == LineKind::kComment;
-    if (!tells && !says) return 0;
+    if (!tells) return 0;
   }
   return 0;
 }

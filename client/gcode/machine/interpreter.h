@@ -133,6 +133,8 @@ class Interpreter {
   void FollowHeat(Step& step);
   // Lexes the line at `next`, which moves behind it; false at the end of the text.
   bool LexAhead(Offset& next, Command& command) const;
+  // The same without blank lines and comments, however many there are.
+  bool LexCommandAhead(Offset& next, Command& command) const;
   // The end of the lines that lift relatively, G91, moves of Z, G90, if such begin at the line
   // before `next`; otherwise 0.
   Offset LiftsUntil(Offset next) const;
@@ -141,7 +143,7 @@ class Interpreter {
   Offset ConditionUntil(Offset next) const;
   // The next command, but for waiting, moves filament alone or pulls it back.
   bool PullsNext() const;
-  // The next motion in XY deposits.
+  // The next deposit begins near to where the head is, and it goes nowhere else before.
   bool PrintsNext() const;
   StepKind KindOfWait() const;
   void SwitchUnits();

@@ -21,6 +21,18 @@ std::string_view TrimmedLine(std::string_view& rest) {
   return line;
 }
 
+// The next one that is not blank and no comment; empty if none follows.
+std::string_view NextCommand(std::string_view& rest) {
+  while (!rest.empty()) {
+    const std::string_view line = TrimmedLine(rest);
+    if (!line.empty() && line[0] != ';') return line;
+  }
+  return {};
+}
+
+// Commands that are looked at for how a lift or a wait goes on.
+constexpr size_t kMostAhead = 16;
+
 }  // namespace
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
@@ -181,48 +193,52 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
 // script waits for something, far from the paths on both sides.
 void VerifyMachine::Wait(Micro milliseconds, VerifyLine& line) {
   const bool of_pull = waits_ || PullsBehind();
-  if (!of_pull || (StandsAside() && !DepositsBehind())) return Fence(line, LineRole::kFixed);
+  if (!of_pull || (IsFar(left_[0], left_[1]) && !DepositsBehind()))
+    return Fence(line, LineRole::kFixed);
   NoteMotion(4, 0, at_, 0);
   motion_.feed = milliseconds;
   line.moves = true;
   pulls_ = waits_;
 }
 
-bool VerifyMachine::StandsAside() const {
+bool VerifyMachine::IsFar(Micro x, Micro y) const {
   constexpr double kMostMicro = 10'000'000;  // slicers lead inwards, coast and wipe less far
   const double scale = inches_ ? 25.4 : 1;
-  return std::hypot(static_cast<double>(at_[0] - left_[0]),
-                    static_cast<double>(at_[1] - left_[1])) *
-             scale >
+  return scale * std::hypot(static_cast<double>(at_[0] - x), static_cast<double>(at_[1] - y)) >
          kMostMicro;
 }
 
 bool VerifyMachine::DepositsBehind() const {
-  constexpr size_t kMostLines = 16;
   std::string_view rest = lines_.rest();
+  Micro x = at_[0];
+  Micro y = at_[1];
   Nano e = e_;
-  for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
-    const std::string_view line = TrimmedLine(rest);
-    if (line.empty() || UpperCase(line[0]) != 'G') continue;
+  for (size_t i = 0; i < kMostAhead; ++i) {
+    const std::string_view line = NextCommand(rest);
+    if (line.empty()) return false;
+    if (UpperCase(line[0]) != 'G') continue;
     int number = -1;
     std::from_chars(line.data() + 1, line.data() + line.size(), number);
     if (number != 92 && (number < 0 || number > 3)) continue;
     const CommandWords words(WordsOf(line));
     if (!words.readable) return false;
     const bool sideways = number != 92 && (words.Has('X') || words.Has('Y'));
-    if (sideways) return words.Has('E') && words.filament > (relative_ || relative_e_ ? 0 : e);
+    if (sideways) {
+      if (words.Has('E') && words.filament > (relative_ || relative_e_ ? 0 : e)) return true;
+      if (words.Has('X')) x = relative_ ? x + words['X'] : words['X'];
+      if (words.Has('Y')) y = relative_ ? y + words['Y'] : words['Y'];
+      if (IsFar(x, y)) return false;
+    }
     if (words.Has('E')) e = words.filament;
   }
   return false;
 }
 
 bool VerifyMachine::PullsBehind() const {
-  constexpr size_t kMostLines = 8;
   std::string_view rest = lines_.rest();
-  for (size_t lines = 0; lines < kMostLines && !rest.empty(); ++lines) {
-    const std::string_view line = TrimmedLine(rest);
-    if (line.find('\r') != std::string_view::npos) return false;
-    if (line.empty() || line[0] == ';') continue;
+  for (size_t i = 0; i < kMostAhead; ++i) {
+    const std::string_view line = NextCommand(rest);
+    if (line.empty() || line.find('\r') != std::string_view::npos) return false;
     const char letter = UpperCase(line[0]);
     int number = -1;
     std::from_chars(line.data() + 1, line.data() + line.size(), number);
@@ -251,11 +267,10 @@ void VerifyMachine::SetPosition(const CommandWords& words, VerifyLine& line) {
 }
 
 size_t VerifyMachine::LinesOfLift() const {
-  constexpr size_t kMostLines = 8;
   std::string_view rest = lines_.rest();
   bool lifts = false;
   bool ended = false;
-  for (size_t lines = 0; lines < kMostLines; ++lines) {
+  for (size_t lines = 0; lines < kMostAhead; ++lines) {
     const std::string_view line = TrimmedLine(rest);
     if (line.find('\r') != std::string_view::npos) return 0;
     const bool command = line.size() > 2 && (line[0] == 'G' || line[0] == 'g');
@@ -276,12 +291,10 @@ size_t VerifyMachine::LinesOfLift() const {
 
 // Behind M622: all lines up to M623 are pictures, notes or comments.
 bool VerifyMachine::ConditionOnlyTells() const {
-  constexpr size_t kMostLines = 16;
   std::string_view rest = lines_.rest();
-  for (size_t i = 0; i < kMostLines && !rest.empty(); ++i) {
-    const std::string_view line = TrimmedLine(rest);
+  for (size_t i = 0; i < kMostAhead; ++i) {
+    const std::string_view line = NextCommand(rest);
     if (line.find('\r') != std::string_view::npos) return false;
-    if (line.empty() || line[0] == ';') continue;
     const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
     if (name == "M623") return true;
     const bool tells =

@@ -119,8 +119,8 @@ class VerifyMachine {
   size_t LinesOfLift() const;
   bool ConditionOnlyTells() const;
   bool PullsBehind() const;     // so does the next command, without waiting
-  bool DepositsBehind() const;  // the next line that leads sideways
-  bool StandsAside() const;     // away from what was deposited last
+  bool DepositsBehind() const;  // the next lines that lead sideways, near to where the head is
+  bool IsFar(Micro x, Micro y) const;
   void Wait(Micro milliseconds, VerifyLine& line);
   bool InLift() const { return lines_.number() <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);

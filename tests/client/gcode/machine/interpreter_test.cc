@@ -266,6 +266,13 @@ TEST(Interpreter, WaitsFarFromBothPathsBelongToAScript) {
   EXPECT_EQ(wait(park, "G1 E1\nM204 S500\n;TYPE:Perimeter\nG1 X90 E1"), StepKind::kDwell);
   EXPECT_EQ(wait(park + "G1 E1\n", "G1 X90 E1"), StepKind::kDwell);
   EXPECT_EQ(wait(park + "G1 E1\n", ""), StepKind::kDwell) << "up to a path";
+  // Near to where it begins, whatever is said in between.
+  EXPECT_EQ(wait(park + "G1 E1\n", "G1 X97\nG1 X90 E1"), StepKind::kDwell);
+  EXPECT_EQ(wait(park + "G1 E1\n", "G1 X80\nG1 X99\nG1 X90 E1"), StepKind::kUnknown);
+  std::string remarks;
+  for (int i = 0; i < 100; ++i) remarks += "; remark\n\n";
+  EXPECT_EQ(wait(park + "G1 E1\n", remarks + "G1 X90 E1"), StepKind::kDwell);
+  EXPECT_EQ(wait("G1 X4\n", remarks + "G1 E-1\n" + park), StepKind::kDwell);
 }
 
 }  // namespace

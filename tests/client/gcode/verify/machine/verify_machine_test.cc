@@ -60,6 +60,13 @@ TEST(VerifyMachine, WhatWaitsFarFromBothPathsIsAFence) {
   EXPECT_NE(wait("G1 X4\nG1 E-1\n", park), LineRole::kFixed);
   EXPECT_NE(wait(park, "G1 E1\nM204 S500\n;TYPE:Perimeter\nG1 X90 E1\n"), LineRole::kFixed);
   EXPECT_NE(wait(park + "G1 E1\n", "G1 X90 E1\n"), LineRole::kFixed);
+  // Near to where it begins, whatever is said in between.
+  EXPECT_NE(wait(park + "G1 E1\n", "G1 X97\nG1 X90 E1\n"), LineRole::kFixed);
+  EXPECT_EQ(wait(park + "G1 E1\n", "G1 X80\nG1 X99\nG1 X90 E1\n"), LineRole::kFixed);
+  std::string remarks;
+  for (int i = 0; i < 100; ++i) remarks += "; remark\n\n";
+  EXPECT_NE(wait(park + "G1 E1\n", remarks + "G1 X90 E1\n"), LineRole::kFixed);
+  EXPECT_NE(wait("G1 X4\n", remarks + "G1 E-1\n" + park), LineRole::kFixed);
 }
 
 // How E counts is guessed where nothing says so, and the guess depends on the order of the lines.
