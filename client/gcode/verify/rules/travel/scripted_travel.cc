@@ -64,14 +64,15 @@ void LeaveOutSinking(const TracePath& path, std::vector<TravelStep>& steps) {
   if (sinks) steps.pop_back();
 }
 
-// How much farther the travel behind unknown lines leads than straight to its path.
+// How much farther the travel behind unknown lines leads than straight to its path. Wipes lead
+// where their paths do.
 double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
   const TraceLink& link = chunk.links[path];
   double length = 0;
   const TraceMove* first = nullptr;
   for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (!move.sideways()) continue;
+    if (!move.sideways() || move.kind == MoveKind::kWipe) continue;
     if (first == nullptr) first = &move;
     length += move.length_mm();
   }

@@ -165,6 +165,20 @@ TEST(VerifyScripts, TravelsBehindUnknownLinesGoAsTheyDid) {
   EXPECT_EQ(Broken(a, With(a, travel, "G1 X0 Y5 F9000\nG1 X3 Y5\n" + travel)), "bounds");
 }
 
+// They lead where the path before them does, towards the next one or not.
+TEST(VerifyScripts, WipesBehindUnknownLinesDoNotWind) {
+  const auto print = [](const std::string& near, const std::string& far) {
+    const std::string line = ";TYPE:Internal infill\nG1 F1800\nG1 ";
+    return kHead + kTwo + Line("Internal infill", "X0 Y7", "X9 Y7") +
+           "M976 S11 C10\nG1 E-.2 F2100\n;WIPE_START\nG1 X1 Y7 E-.5 F7200\n;WIPE_END\n" +
+           "G1 E-.3 F2100\nG1 " + near + " F9000\nG1 E1 F2100\n" + line + "X5 " + near.substr(3) +
+           " E.2\n" + Travel(far) + line + "X5 " + far.substr(3) + " E.2\n";
+  };
+  const std::string a = print("X0 Y9", "X9 Y11");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, print("X9 Y11", "X0 Y9")), "");
+}
+
 // A script leaves its own acceleration behind, and the travel to the next path keeps it.
 TEST(VerifyScripts, TravelsBehindUnknownLinesAccelerateAsTheyDid) {
   const std::string script = "M204 S500\nM976 S11 C10\n";
