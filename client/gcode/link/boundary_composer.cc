@@ -9,6 +9,20 @@
 namespace traverse::gcode {
 namespace {
 
+// The step at which the file sets what the travel is made under: if it wipes before, as the path
+// was printed, and else the first one.
+size_t SetsTravelAt(const Link& link) {
+  bool wipes = false;
+  for (size_t i = link.fixed; link.Leaves(i); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (step.kind == StepKind::kSlot && (step.slots & kDynamicsSlots) != 0) {
+      return wipes ? i : link.fixed;
+    }
+    wipes = wipes || step.kind == StepKind::kWipe;
+  }
+  return link.fixed;
+}
+
 // What a step of an arrival does to Z and filament.
 bool Arrives(StepKind kind) {
   return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
@@ -76,11 +90,12 @@ void LinkComposer::ComposeBoundary() {
     // Whatever was printed last: at its marks the fan is as in the file.
     link_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }
-  link_.Set(StateOfTravel(link), kDynamicsSlots);
   const bool as_given = LeavesAsGiven(boundary);
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> like;
   if (form_.retracts && !link.arrives_retracted && link.arrival >= 0) like = LikeWhat(true);
+  const size_t sets = like ? link.fixed : SetsTravelAt(link);
+  if (sets == link.fixed) link_.Set(StateOfTravel(link), kDynamicsSlots);
   // But not before the label of an object, if it comes at the same height.
   const bool behind_label = like && LabelsBeforeTravel(link);
   if (like && !behind_label) {
@@ -94,6 +109,7 @@ void LinkComposer::ComposeBoundary() {
                                to_.placement().block);
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
+    if (i == sets && i > link.fixed) link_.Set(StateOfTravel(link), kDynamicsSlots);
     if (kind == StepKind::kProgress && form_.without_progress) continue;
     if (kind == StepKind::kLabel || kind == StepKind::kStay || kind == StepKind::kSays) {
       link_.Raw(labels.LineOf(i));
