@@ -9,20 +9,6 @@
 namespace traverse::gcode {
 namespace {
 
-// The step at which the file sets what the travel is made under: if it wipes before, as the path
-// was printed, and else the first one.
-size_t SetsTravelAt(const Link& link) {
-  bool wipes = false;
-  for (size_t i = link.fixed; link.Leaves(i); ++i) {
-    const LinkStep& step = link.steps[i];
-    if (step.kind == StepKind::kSlot && (step.slots & kDynamicsSlots) != 0) {
-      return wipes ? i : link.fixed;
-    }
-    wipes = wipes || step.kind == StepKind::kWipe;
-  }
-  return link.fixed;
-}
-
 // What a step of an arrival does to Z and filament.
 bool Arrives(StepKind kind) {
   return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
@@ -94,12 +80,13 @@ void LinkComposer::ComposeBoundary() {
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> like;
   if (form_.retracts && !link.arrives_retracted && link.arrival >= 0) like = LikeWhat(true);
+  const PrintState travel = StateOfTravel(link);
   const size_t sets = like ? link.fixed : SetsTravelAt(link);
-  if (sets == link.fixed) link_.Set(StateOfTravel(link), kDynamicsSlots);
+  if (sets == link.fixed) link_.Set(travel, kDynamicsSlots);
   // But not before the label of an object, if it comes at the same height.
   const bool behind_label = like && LabelsBeforeTravel(link);
   if (like && !behind_label) {
-    Depart(*like);
+    Depart(*like, travel);
   } else if (!like && link.fixed == 0 && !(as_given && link.departs)) {
     GoOn();
     if (!as_given && link.retracts()) DepartAsOwn();
@@ -109,14 +96,14 @@ void LinkComposer::ComposeBoundary() {
                                to_.placement().block);
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
-    if (i == sets && i > link.fixed) link_.Set(StateOfTravel(link), kDynamicsSlots);
+    if (i == sets && i > link.fixed) link_.Set(travel, kDynamicsSlots);
     if (kind == StepKind::kProgress && form_.without_progress) continue;
     if (kind == StepKind::kLabel || kind == StepKind::kStay || kind == StepKind::kSays) {
       link_.Raw(labels.LineOf(i));
     } else if (static_cast<int>(i) != link.arrival) {
       if (own == nullptr || link.Leaves(i) || !Arrives(kind)) ComposeBoundaryStep(link, i);
     } else if (like) {
-      if (behind_label) Depart(*like);
+      if (behind_label) Depart(*like, travel);
       TravelAs(link, std::max(link.top, to_.first().z + like->lift), *like);
       Arrive(*like);
     } else {

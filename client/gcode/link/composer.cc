@@ -105,8 +105,7 @@ Link LinkComposer::LikeHidden() const {
 
 void LinkComposer::ComposePlain() {
   const Link like = form_.hidden ? LikeHidden() : LikeWhat(form_.retracts);
-  SetTravelState(like);
-  const Link left = Depart(like);
+  const Link left = Depart(like, TravelStateOf(like));
   const Link rise =
       Stretched(left.lift > like.lift ? left : like, LengthXy(link_.at(), to_.first()),
                 donors_.highest_lift(), link_.machine().UnitMm());
@@ -121,12 +120,12 @@ void LinkComposer::ComposePlain() {
 
 // New travel has the accelerations and jerks that `like` has, for so does travel in this file. A
 // slot that was never set here stays so, for nothing could undo it.
-void LinkComposer::SetTravelState(const Link& like) {
+PrintState LinkComposer::TravelStateOf(const Link& like) const {
   PrintState state = to_.state();
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
     if (state[slot] != 0 && like.travel_state[slot] != 0) state[slot] = like.travel_state[slot];
   }
-  link_.Set(state, kDynamicsSlots);
+  return state;
 }
 
 // The link that leads away from the path in the file, if what it does there fits here.
@@ -140,17 +139,20 @@ std::optional<Link> LinkComposer::OwnDeparture(const Link& like) const {
   return *left_;
 }
 
-// What leads away from the path; returns the link that it is like.
-Link LinkComposer::Depart(const Link& like) {
+// What leads away from the path, up to where `travel` is set; returns the link that it is like.
+Link LinkComposer::Depart(const Link& like, const PrintState& travel) {
   const std::optional<Link> own = form_.hidden ? std::nullopt : OwnDeparture(like);
   const bool exact = own && from_.as_given();
   const Link& link = own ? *own : like;
   const Decimal z = link_.at().z;
+  const size_t sets = SetsTravelAt(link);
+  if (sets == link.fixed) link_.Set(travel, kDynamicsSlots);
   if (!exact || !link.departs) GoOn();
   if (own ? !exact : like.retracts()) DepartAsOwn();
   bool wiped = false;
   for (size_t i = 0; link.Leaves(i); ++i) {
     const LinkStep& step = link.steps[i];
+    if (i == sets && i > link.fixed) link_.Set(travel, kDynamicsSlots);
     if (IsXyMotion(step.kind)) {
       const bool departs = form_.departs && DepartureOf(link) == &step;
       if (exact && (step.kind == StepKind::kWipe || departs)) {

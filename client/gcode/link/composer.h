@@ -64,8 +64,8 @@ class LinkComposer {
   // Whether the link before block `boundary` follows the path before as it is in the file.
   bool LeavesAsGiven(uint32_t boundary) const;
 
-  void SetTravelState(const Link& like);
-  Link Depart(const Link& like);
+  PrintState TravelStateOf(const Link& like) const;
+  Link Depart(const Link& like, const PrintState& travel);
   void DepartAsOwn();
   void GoOn();
   void Wipe(const Link& like);

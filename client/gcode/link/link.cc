@@ -134,6 +134,18 @@ bool PrimesBefore(const Link& link, size_t i) {
                      Primes);
 }
 
+size_t SetsTravelAt(const Link& link) {
+  bool wipes = false;
+  for (size_t i = link.fixed; link.Leaves(i); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (step.kind == StepKind::kSlot && (step.slots & kDynamicsSlots) != 0) {
+      return wipes ? i : link.fixed;
+    }
+    wipes = wipes || step.kind == StepKind::kWipe;
+  }
+  return link.fixed;
+}
+
 WipeForm WipeOf(const Link& link) {
   WipeForm form;
   for (const LinkStep& step : link.steps) {

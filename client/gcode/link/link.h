@@ -94,6 +94,10 @@ bool MayDepart(const GcodeFile& file, size_t index);
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
+// The step before which what the travel is made under is set: where the file sets it if it wipes
+// before, as the path was printed, and else the first that is not fixed.
+size_t SetsTravelAt(const Link& link);
+
 // What the wipe of a link does that stands before its first prime.
 struct WipeForm {
   double travel_mm = 0;
