@@ -68,6 +68,7 @@ void WallGrid::Fill(Rest& rest) {
       for (int column = first; column <= last; ++column) {
         visit(cell + static_cast<size_t>(column));
       }
+      return true;
     });
   };
   first_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 2, 0);

@@ -79,12 +79,11 @@ class WallGrid {
   void ForEachOnLine(Point a, Point b, Visit visit, double beside_mm = 0) const;
 
  private:
-  int Column(double x) const {
-    return static_cast<int>(std::clamp((x - low_.x) * per_mm_, 0.0, columns_ - 1.0));
+  // The cell of `count` in which a position lies, or the nearest to it.
+  static int Cell(double position, int count) {
+    return static_cast<int>(std::clamp(position, 0.0, count - 1.0));
   }
-  int Row(double y) const {
-    return static_cast<int>(std::clamp((y - low_.y) * per_mm_, 0.0, rows_ - 1.0));
-  }
+  int Row(double y) const { return Cell((y - low_.y) * per_mm_, rows_); }
 
   // Calls visit(row, first column, last column) for the rows of cells that contain the line, or
   // are as near to it as `beside_mm`.
@@ -114,18 +113,25 @@ void WallGrid::ForEachRow(Point a, Point b, double beside_mm, Visit visit) const
   if (a.y > b.y) std::swap(a, b);
   const int first = Row(a.y - beside);
   const int last = Row(b.y + beside);
-  const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
-  for (int row = first; row <= last; ++row) {
-    double x0 = a.x;
-    double x1 = b.x;
-    if (first != last && b.y - a.y > kSlack) {
-      const double top = low_.y + (row + 1) * cell_mm_ + beside;
-      const double bottom = low_.y + row * cell_mm_ - beside;
-      if (row > first) x0 = a.x + slope * std::clamp(bottom - a.y, 0.0, b.y - a.y);
-      if (row < last) x1 = a.x + slope * std::clamp(top - a.y, 0.0, b.y - a.y);
+  const double left = (std::min(a.x, b.x) - beside - low_.x) * per_mm_;
+  const double right = (std::max(a.x, b.x) + beside - low_.x) * per_mm_;
+  if (first == last || b.y - a.y <= kSlack) {
+    for (int row = first; row <= last; ++row) {
+      if (!visit(row, Cell(left, columns_), Cell(right, columns_))) return;
     }
-    const double slack = beside_mm + kSlack * (1 + std::abs(slope) * 1e-6);
-    visit(row, Column(std::min(x0, x1) - slack), Column(std::max(x0, x1) + slack));
+    return;
+  }
+  // Within a row the line lies between where it passes the row's two borders, in columns of cells.
+  const double slope = (b.x - a.x) / (b.y - a.y);
+  const double wide = std::abs(slope);
+  const double slack = beside * per_mm_ * (1 + wide);
+  const double least =
+      (a.x - low_.x - slope * (a.y - low_.y)) * per_mm_ - slack + std::min(slope, 0.0);
+  const double most = least + 2 * slack + wide;
+  for (int row = first; row <= last; ++row) {
+    const double x = slope * row;
+    const int begin = Cell(std::max(least + x, left), columns_);
+    if (!visit(row, begin, Cell(std::min(most + x, right), columns_))) return;
   }
 }
 
@@ -138,13 +144,11 @@ void WallGrid::ForEachOnLine(Point a, Point b, Visit visit, double beside_mm) co
       std::min(a.y, b.y) > box_.high().y + beside_mm) {
     return;
   }
-  bool going_on = true;
   ForEachRow(a, b, beside_mm, [&](int row, int first, int last) {
-    if (!going_on) return;
     const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
     const uint32_t begin = first_[cell + static_cast<size_t>(first)];
     const uint32_t end = first_[cell + static_cast<size_t>(last) + 1];
-    for (uint32_t i = begin; going_on && i < end; ++i) going_on = visit(entries_[i]);
+    return std::all_of(entries_.begin() + begin, entries_.begin() + end, visit);
   });
 }
 
