@@ -20,7 +20,7 @@ constexpr size_t kMostDetours = size_t{1} << 16;
 // The cost of a question with an unknown answer, relative to one with a known answer, and the
 // additional cost of each test for a detour.
 constexpr int64_t kWorkOfCrossing = 5;
-constexpr int64_t kWorkOfTest = 4;
+constexpr int64_t kWorkOfTest = 6;
 
 // What Rest counts for a point and a move that are put into a table.
 constexpr size_t kStepsOfPoint = 8;

@@ -78,9 +78,12 @@ WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wa
 }
 
 std::vector<Point> WallDetours::Around(Point a, Point b, int64_t* tests) const {
-  int64_t done = 0;
-  std::vector<Point> there = OneDetour(a, b, {}, 0, done);
-  std::vector<Point> back = OneDetour(b, a, {}, 0, done);
+  Hits hits = HitsOf(a, b, {});
+  int64_t done = 1 + static_cast<int64_t>(hits.size());
+  std::vector<Point> there = Along(a, b, hits, {}, 0, done);
+  std::reverse(hits.begin(), hits.end());
+  for (Hit& hit : hits) hit.along = 1 - hit.along;
+  std::vector<Point> back = Along(b, a, hits, {}, 0, done);
   if (tests != nullptr) *tests += done;
   std::reverse(back.begin(), back.end());
   if (there.empty()) return back;
@@ -94,8 +97,8 @@ bool WallDetours::IsClosed(uint32_t wall) const {
 }
 
 // In the order along the move, each segment once. Stops when there are more than kMostHits.
-std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b, MoveEnds ends) const {
-  std::vector<Hit> hits;
+WallDetours::Hits WallDetours::HitsOf(Point a, Point b, MoveEnds ends) const {
+  Hits hits;
   const auto put_in_order = [&hits] {
     std::sort(hits.begin(), hits.end(), [](const Hit& one, const Hit& other) {
       return std::pair(one.along, one.segment) < std::pair(other.along, other.segment);
@@ -103,7 +106,9 @@ std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b, MoveEnds end
     const auto same = [](const Hit& one, const Hit& other) { return one.segment == other.segment; };
     hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   };
-  const auto [from, to] = grid_.WithoutEnds(a, b, ends);
+  auto [from, to] = grid_.WithoutEnds(a, b, ends);
+  // As WallGrid::Crosses looks at it, for a line along a wall crosses it from one end only.
+  if (std::pair(to.x, to.y) < std::pair(from.x, from.y)) std::swap(from, to);
   grid_.ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
     if (!SegmentsCross(from, to, wall.a, wall.b)) return true;
@@ -142,10 +147,16 @@ std::optional<uint32_t> WallDetours::SegmentAt(uint32_t wall, Point at) const {
 
 std::vector<Point> WallDetours::OneDetour(Point a, Point b, MoveEnds ends, int depth,
                                           int64_t& tests) const {
-  const std::vector<Hit> hits = HitsOf(a, b, ends);
+  const Hits hits = HitsOf(a, b, ends);
   tests += 1 + static_cast<int64_t>(hits.size());
+  return Along(a, b, hits, ends, depth, tests);
+}
+
+// The detour along the walls of `hits`.
+std::vector<Point> WallDetours::Along(Point a, Point b, const Hits& hits, MoveEnds ends, int depth,
+                                      int64_t& tests) const {
   if (hits.empty() || hits.size() > kMostHits) return {};
-  std::vector<Point> detour = {a};
+  Bends detour = {{a, {}}};
   for (size_t i = 0; i < hits.size();) {
     const uint32_t wall = WallOf(hits[i].segment);
     size_t last = i;
@@ -173,9 +184,8 @@ std::vector<Point> WallDetours::OneDetour(Point a, Point b, MoveEnds ends, int d
     if (!Follow(first, behind, side, a, b, detour)) return {};
     i = last + 1;
   }
-  detour.push_back(b);
-  if (!PullTaut(detour, ends, depth, tests)) return {};
-  return {detour.begin() + 1, detour.end() - 1};
+  detour.push_back({b, {}});
+  return PulledTaut(detour, ends, depth, tests);
 }
 
 // Beside the corner between two segments, on the given side.
@@ -204,7 +214,7 @@ double WallDetours::BetweenBends(uint32_t wall, const Side& side, uint32_t from,
 // Appends the shorter way along a wall from one hit to another, on one side of it. False if it
 // has too many corners.
 bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
-                         std::vector<Point>& detour) const {
+                         Bends& detour) const {
   const uint32_t wall = WallOf(first.segment);
   const auto [from, to] = grid_.SegmentsOf(wall);
   const uint32_t n = to - from;
@@ -237,43 +247,91 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
   }
   if (!found[0] && !found[1]) return false;
   const bool forward = !found[0] || (found[1] && lengths_mm[1] <= lengths_mm[0]);
-  detour.push_back(begin);
+  const double corner_side = forward ? -side : side;
+  detour.push_back({begin, Between(a, b, first.along), corner_side});
   for (uint32_t i = 0; i < corners[forward]; ++i) {
-    detour.push_back(beside.bends[corner(forward, i)]);
+    const uint32_t s = corner(forward, i);
+    detour.push_back({beside.bends[s], grid_.segments()[s].b, corner_side});
   }
-  detour.push_back(end);
+  detour.push_back({end, Between(a, b, last.along), corner_side});
   return true;
 }
 
-// Leaves out points that are not needed. False if a stretch crosses a wall around which there is no
-// detour.
-bool WallDetours::PullTaut(std::vector<Point>& detour, MoveEnds ends, int depth,
-                           int64_t& tests) const {
+// What is in sight from a bend past the corners of those behind it.
+class WallDetours::Sight {
+ public:
+  explicit Sight(const Bend& from) : from_(from.at) { Pass(from); }
+
+  // Passes `bend`. True if it is in sight past its corner and those before.
+  bool Pass(const Bend& bend) {
+    if (bend.side != 0) {
+      Corner& corner = bend.side > 0 ? left_ : right_;
+      if (!corner.passed || bend.side * Turn(corner.at, bend.corner) < 0) {
+        corner = {bend.corner, true};
+      }
+    }
+    return !(left_.passed && Turn(bend.at, left_.at) < 0) &&
+           !(right_.passed && Turn(bend.at, right_.at) > 0);
+  }
+
+ private:
+  // Of those on one side, the one that leaves least in sight.
+  struct Corner {
+    Point at;
+    bool passed = false;
+  };
+
+  // Positive if `other` is to the left of `one`.
+  double Turn(Point one, Point other) const {
+    return (one.x - from_.x) * (other.y - from_.y) - (one.y - from_.y) * (other.x - from_.x);
+  }
+
+  const Point from_;
+  Corner left_;
+  Corner right_;
+};
+
+// The last bend up to which those behind bend `at` are in sight past the corners that they pass;
+// the next one at least, and whatever other walls are in the way.
+size_t WallDetours::LastInSight(const Bends& detour, size_t at) {
+  Sight sight(detour[at]);
+  size_t last = at + 1;
+  sight.Pass(detour[last]);
+  while (last + 1 < detour.size() && sight.Pass(detour[last + 1])) ++last;
+  return last;
+}
+
+// `detour` without its ends and the bends that are not needed. Empty if a stretch crosses a wall
+// around which there is no detour.
+std::vector<Point> WallDetours::PulledTaut(const Bends& detour, MoveEnds ends, int depth,
+                                           int64_t& tests) const {
   const auto ends_of = [&](size_t from, size_t to) {
     return MoveEnds{ends.a && from == 0, ends.b && to + 1 == detour.size()};
   };
-  std::vector<Point> taut = {detour.front()};
-  tests += static_cast<int64_t>(detour.size());
+  const auto crosses = [&](size_t from, size_t to) {
+    ++tests;
+    return grid_.Crosses(detour[from].at, detour[to].at, ends_of(from, to));
+  };
+  std::vector<Point> taut = {detour.front().at};
   for (size_t at = 0; at + 1 < detour.size();) {
-    size_t next = at + 1;
-    if (grid_.Crosses(detour[at], detour[next], ends_of(at, next))) {
-      if (depth == kMostDepth) return false;
-      const std::vector<Point> around =
-          OneDetour(detour[at], detour[next], ends_of(at, next), depth + 1, tests);
-      if (around.empty()) return false;
-      taut.insert(taut.end(), around.begin(), around.end());
-    } else {
-      while (next + 1 < detour.size() &&
-             !grid_.Crosses(detour[at], detour[next + 1], ends_of(at, next + 1))) {
-        ++next;
+    size_t next = LastInSight(detour, at);
+    if (crosses(at, next)) {
+      next = at + 1;
+      if (crosses(at, next)) {
+        if (depth == kMostDepth) return {};
+        const std::vector<Point> around =
+            OneDetour(detour[at].at, detour[next].at, ends_of(at, next), depth + 1, tests);
+        if (around.empty()) return {};
+        taut.insert(taut.end(), around.begin(), around.end());
+      } else {
+        while (next + 1 < detour.size() && !crosses(at, next + 1)) ++next;
       }
     }
-    taut.push_back(detour[next]);
+    taut.push_back(detour[next].at);
     at = next;
   }
   Straighten(taut, ends, tests);
-  detour = std::move(taut);
-  return true;
+  return {taut.begin() + 1, taut.end() - 1};
 }
 
 // Leaves out bends that no wall requires: beyond a stretch that a wall blocks there may be a point
@@ -284,6 +342,8 @@ void WallDetours::Straighten(std::vector<Point>& detour, MoveEnds ends, int64_t&
   std::vector<Point> straight = {detour.front()};
   for (size_t at = 1; at < detour.size(); ++at) {
     for (; straight.size() > 1; straight.pop_back()) {
+      // From end to end a wall is in the way: that is why there is a detour.
+      if (straight.size() == 2 && at + 1 == detour.size()) break;
       ++tests;
       const MoveEnds of_line{ends.a && straight.size() == 2, ends.b && at + 1 == detour.size()};
       if (grid_.Crosses(straight[straight.size() - 2], detour[at], of_line)) break;

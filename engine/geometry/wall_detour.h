@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/container/inlined_vector.h"
 #include "engine/geometry/wall_grid.h"
 #include "engine/model/point.h"
 
@@ -42,13 +43,28 @@ class WallDetours {
     uint32_t segment = 0;
   };
 
+  // A point of a detour, and the corner of a wall that it passes.
+  struct Bend {
+    Point at;
+    Point corner;
+    double side = 0;  // of the detour, on which the corner is: 1 left, -1 right; 0: there is none
+  };
+
+  class Sight;
+
+  // Most are few, and take no memory elsewhere.
+  using Hits = absl::InlinedVector<Hit, 16>;
+  using Bends = absl::InlinedVector<Bend, 32>;
+
   uint32_t WallOf(uint32_t segment) const { return grid_.segments()[segment].wall; }
   bool IsClosed(uint32_t wall) const;
-  std::vector<Hit> HitsOf(Point a, Point b, MoveEnds ends) const;
+  Hits HitsOf(Point a, Point b, MoveEnds ends) const;
   std::vector<Point> OneDetour(Point a, Point b, MoveEnds ends, int depth, int64_t& tests) const;
+  std::vector<Point> Along(Point a, Point b, const Hits& hits, MoveEnds ends, int depth,
+                           int64_t& tests) const;
   std::optional<uint32_t> SegmentAt(uint32_t wall, Point at) const;
   bool Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
-              std::vector<Point>& detour) const;
+              Bends& detour) const;
   Point Beside(uint32_t before, uint32_t behind, Point at, double side) const;
 
   // One side of the walls.
@@ -58,7 +74,9 @@ class WallDetours {
   };
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
-  bool PullTaut(std::vector<Point>& detour, MoveEnds ends, int depth, int64_t& tests) const;
+  static size_t LastInSight(const Bends& detour, size_t at);
+  std::vector<Point> PulledTaut(const Bends& detour, MoveEnds ends, int depth,
+                                int64_t& tests) const;
   void Straighten(std::vector<Point>& detour, MoveEnds ends, int64_t& tests) const;
 
   const WallGrid& grid_;

@@ -65,6 +65,20 @@ TEST(WallDetours, AreNotLookedForThroughAThousandWalls) {
   EXPECT_FALSE(WallDetours(grid, 0.4, 0.3).Around({-5, 2}, {1007, 2}).empty());
 }
 
+// What the corners of the wall itself leave in sight is known without a look at the walls.
+TEST(WallDetours, AskLittleAlongAWallOfManyCorners) {
+  std::vector<Wall> walls = {Box(0, 0, 40, 40), {{}, true, -1}};
+  for (int i = 0; i < 400; ++i) {
+    walls[1].points.push_back({20 + 10 * std::cos(i * 0.015708), 20 + 10 * std::sin(i * 0.015708)});
+  }
+  const WallGrid grid(walls, kSlack);
+
+  int64_t tests = 0;
+  EXPECT_FALSE(WallDetours(grid, 0.4, 0.3).Around({5, 21}, {35, 21}, &tests).empty());
+
+  EXPECT_LT(tests, 60) << "both ways along 200 corners";
+}
+
 TEST(WallDetours, CrossNothingAreTautAndTheSameThereAndBack) {
   int found = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
