@@ -93,6 +93,18 @@ double BytesForFarLines(const TextCount& count, FileUse use) {
   return bytes < kMost ? bytes : kMost;
 }
 
+// Of the travel moves that a layer under way was asked about, and of those that all layers
+// remember.
+double BytesForKnownTravels(const TextCount& count, FileUse use, int64_t layers) {
+  constexpr double kOfPath = 10'000;
+  constexpr double kMost = 32 << 20;
+  if (use != FileUse::kRewrite) return 0;
+  const auto known = [kMost](int64_t paths) {
+    return std::min(kOfPath * static_cast<double>(paths), kMost);
+  };
+  return known(count.paths()) + static_cast<double>(layers) * known(count.most_paths());
+}
+
 double BytesFor(const TextCount& count, FileUse use) {
   const Prices prices = PricesOf(use);
   const int64_t layers = gcode::DefaultThreads();
@@ -106,7 +118,7 @@ double BytesFor(const TextCount& count, FileUse use) {
          of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths())) +
          of(prices.path_in_search,
             std::min(count.paths(), layers * std::min(count.most_paths(), kMostInSearch))) +
-         BytesForFarLines(count, use);
+         BytesForFarLines(count, use) + BytesForKnownTravels(count, use, layers);
 }
 
 std::string FirstBytes(const SpoolFile& upload, size_t most = 16) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/hidden/hidden_moves.h"
 
@@ -67,7 +68,8 @@ class FastSearch {
     const LayerOrder& begun = moved ? column.given_order() : chosen;
     const double given = ForecastPaths(*column.writer, column.given_order());
     const double hidden = ForecastPaths(writer, column.given_order());
-    const double searched = ForecastPaths(writer, KickedOrder(writer, begun, rules));
+    KnownTravels travels(writer);
+    const double searched = ForecastPaths(writer, KickedOrder(travels, begun, rules));
     return {given, std::min({given, hidden, searched})};
   }
 

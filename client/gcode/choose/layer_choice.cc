@@ -3,7 +3,9 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/fast_forecast.h"
@@ -30,6 +32,9 @@ constexpr double kCrossingSeconds[] = {0, 0.25};
 // Choices besides the file's own that are turned.
 constexpr size_t kTurned = 2;
 
+// Travel moves that all layers together remember between the steps of choosing.
+constexpr size_t kMostRemembered = 400'000;
+
 }  // namespace
 
 class LayerChooser::Impl {
@@ -52,7 +57,7 @@ class LayerChooser::Impl {
         filler_(file, habit_, travel_, donors_, room_, rests_),
         objects_(file),
         columns_(file.layers.size()) {
-    ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
+    ForEachLayer(All(), [this](size_t layer) { FillColumn(layer); });
     rests_.SetGiven(TimedRow(columns_, false));
     const auto fill = [this](size_t i) { gcode::FillTravels(file_, columns_[i], columns_[i + 1]); };
     ParallelFor(columns_.size() - 1, threads_, fill);
@@ -70,6 +75,7 @@ class LayerChooser::Impl {
       KickChosen();
       ChooseRow();
       if (SpareRetractions()) ChooseRow();
+      for (LayerColumn& column : columns_) column.known_travels.reset();
     }
     return Write();
   }
@@ -125,6 +131,22 @@ class LayerChooser::Impl {
   }
 
  private:
+  std::vector<size_t> All() const {
+    std::vector<size_t> all(columns_.size());
+    std::iota(all.begin(), all.end(), size_t{0});
+    return all;
+  }
+
+  // Calls work(layer), which may ask for the layer's travel moves, side by side.
+  template <typename Work>
+  void ForEachLayer(const std::vector<size_t>& layers, const Work& work) {
+    ParallelFor(layers.size(), threads_, [&](size_t i) {
+      work(layers[i]);
+      const auto& travels = columns_[layers[i]].known_travels;
+      if (travels != nullptr) travels->Shrink(kMostRemembered / columns_.size());
+    });
+  }
+
   void ChooseRow() {
     do {
       TakeBestRow();
@@ -167,10 +189,10 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
       if (AnyFound(layer) || columns_[layer].chosen != 0) layers.push_back(layer);
     }
-    ParallelFor(layers.size(), threads_, [&](size_t i) {
-      LayerColumn& column = columns_[layers[i]];
-      const LayerOrder chosen = Chosen(layers[i]).order;
-      filler_.Add(KickedOrder(*column.writer, chosen, RulesOf(layers[i])), layers[i], column);
+    ForEachLayer(layers, [this](size_t layer) {
+      LayerColumn& column = columns_[layer];
+      const LayerOrder chosen = Chosen(layer).order;
+      filler_.Add(KickedOrder(column.travels(), chosen, RulesOf(layer)), layer, column);
     });
     FillTravelsAround(layers);
   }
@@ -188,7 +210,7 @@ class LayerChooser::Impl {
       if (totals.inside[chosen].retractions > totals.inside[0].retractions) layers.push_back(layer);
     }
     if (more <= 0 || layers.empty()) return false;
-    ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
+    ForEachLayer(layers, [this](size_t layer) { AddSparing(layer); });
     FillTravelsAround(layers);
     return true;
   }
@@ -209,7 +231,7 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
       if (columns_[layer].refusals.ask()) layers.push_back(layer);
     }
-    ParallelFor(layers.size(), threads_, [&](size_t i) { AddRepaired(layers[i]); });
+    ForEachLayer(layers, [this](size_t layer) { AddRepaired(layer); });
     FillTravelsAround(layers);
   }
 
@@ -223,7 +245,7 @@ class LayerChooser::Impl {
     if (refusals.inside) {
       MergeRules rules = RulesOf(layer);
       rules.refused = &refusals.links;
-      order = RepairedOrder(*column.writer, *order, rules, FreedomWithin(layer, rules),
+      order = RepairedOrder(column.travels(), *order, rules, FreedomWithin(layer, rules),
                             refusals.Reach());
     }
     if (order && refusals.begin) order = BegunAsSliced(*order, column.given_order());
@@ -239,7 +261,7 @@ class LayerChooser::Impl {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
-    const auto orders = SparingOrders(*column.writer, Chosen(layer).order, rules);
+    const auto orders = SparingOrders(column.travels(), Chosen(layer).order, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -263,7 +285,7 @@ class LayerChooser::Impl {
   void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
     if (!AnyFound(layer)) return;
     NoteBlocked(found_[layer], column);
-    const auto orders = MergedOrders(*column.writer, found_[layer], rules);
+    const auto orders = MergedOrders(column.travels(), found_[layer], rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -303,11 +325,11 @@ class LayerChooser::Impl {
     TakeBestRow();
     if (!AnyShortRest(rests_, columns_)) return;
     std::vector<TurnedLayer> turned(columns_.size());
-    ParallelFor(columns_.size(), threads_, [&](size_t layer) { turned[layer] = TurnsOf(layer); });
+    ForEachLayer(All(), [&](size_t layer) { turned[layer] = TurnsOf(layer); });
     std::vector<std::optional<uint32_t>> added(columns_.size());
     for (const double crossing_seconds : kCrossingSeconds) {
       const auto row = RestedRow(rests_, turned, crossing_seconds);
-      ParallelFor(columns_.size(), threads_, [&](size_t layer) {
+      ForEachLayer(All(), [&](size_t layer) {
         if (!row[layer] || row[layer] == added[layer]) return;
         AddTurned(layer, turned[layer].turns, *row[layer]);
         added[layer] = row[layer];
@@ -315,15 +337,15 @@ class LayerChooser::Impl {
     }
   }
 
-  TurnedLayer TurnsOf(size_t layer) const {
-    const LayerColumn& column = columns_[layer];
+  TurnedLayer TurnsOf(size_t layer) {
+    LayerColumn& column = columns_[layer];
     std::vector<LayerOrder> orders;
     for (const LayerOrder* order : FastestOrders(column, kTurned)) orders.push_back(*order);
     const MergeRules rules = RulesOf(layer);
     std::vector<std::vector<uint32_t>> islands = {rests_.RegionsOf(layer)};
     if (islands[0] != rests_.IslandsOf(layer)) islands.push_back(rests_.IslandsOf(layer));
     TurnedLayer turned =
-        TurnedOrders(*column.writer, travel_[layer], orders, rules, FreedomWithin(layer, rules),
+        TurnedOrders(column.travels(), travel_[layer], orders, rules, FreedomWithin(layer, rules),
                      islands, rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
     if (layer == 0) return turned;
@@ -335,7 +357,7 @@ class LayerChooser::Impl {
   void AddTurned(size_t layer, const IslandTurns& turns, size_t turn) {
     LayerOrder order = turns.OrderOf(turn);
     if (polish_) {
-      order = SettledWithin(*columns_[layer].writer, order, RulesOf(layer), turns.UnitsOf(turn));
+      order = SettledWithin(columns_[layer].travels(), order, RulesOf(layer), turns.UnitsOf(turn));
     }
     filler_.Add(order, layer, columns_[layer]);
   }

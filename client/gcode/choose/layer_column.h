@@ -12,6 +12,7 @@
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/forecast.h"
 #include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/refusals.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/policy.h"
@@ -45,9 +46,15 @@ struct LayerColumn {
   std::vector<bool> measured;         // [as totals.travels]
   size_t travels_to = 0;              // choices that these lead to
   Refusals refusals;
-  std::vector<size_t> ends;  // see PlaceOfLine
+  std::vector<size_t> ends;                     // see PlaceOfLine
+  std::unique_ptr<KnownTravels> known_travels;  // of `writer`; null until they are asked for
 
   const LayerOrder& given_order() const { return choices[0].order; }
+
+  KnownTravels& travels() {
+    if (known_travels == nullptr) known_travels = std::make_unique<KnownTravels>(*writer);
+    return *known_travels;
+  }
 
   void Take(uint32_t choice) {
     chosen = choice;

@@ -1,14 +1,11 @@
 #include "client/gcode/choose/merged_orders.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
-#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/order_state.h"
-#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 namespace {
@@ -81,16 +78,16 @@ class LayerMerge {
  public:
   using Effort = OrderPolisher::Effort;
 
-  LayerMerge(const LayerWriter& writer, const MergeRules& rules)
-      : writer_(writer),
+  LayerMerge(KnownTravels& travels, const MergeRules& rules)
+      : writer_(travels.writer()),
+        travels_(travels),
         rules_(rules),
-        given_(writer.GivenOrder()),
-        travels_(writer, rules),
+        given_(writer_.GivenOrder()),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
     if (!rules.freedom) return;
-    polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
+    polisher_.emplace(given_.front().block, writer_.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
   }
 
@@ -201,7 +198,7 @@ class LayerMerge {
     StandAs(order);
     size_t repairs = 0;
     for (size_t place = 1; place < order.size() && repairs < kMostRepairs; ++place) {
-      if (!travels_.IsRefused(order[place - 1], order[place])) continue;
+      if (!IsRefused(order[place - 1], order[place])) continue;
       std::optional<LayerOrder> best;
       for (LayerOrder& other : OrdersWithoutLink(order, place, given_, reach)) {
         if (!KeepsTogether(other, freedom, given_.front().block)) continue;
@@ -218,7 +215,20 @@ class LayerMerge {
 
  private:
   // `order` may have objects in other places than the file.
-  void StandAs(const LayerOrder& order) { travels_.SetPlaces(writer_.PlacesOf(order)); }
+  void StandAs(const LayerOrder& order) { places_ = writer_.PlacesOf(order); }
+
+  // The rules refuse that link.
+  bool IsRefused(const Placement& from, const Placement& to) const {
+    return rules_.refused != nullptr && rules_.refused->contains({from, to});
+  }
+
+  // See TravelEstimate.
+  TravelTotals TravelTo(size_t place, const Placement& from, const Placement& to) const {
+    if (!places_.empty()) place = places_[place];
+    TravelTotals totals = travels_(place, from, to);
+    if (IsRefused(from, to) && !travels_.IsAsGiven(place, from, to)) ++totals.too_long;
+    return totals;
+  }
 
   Point BeginOf(const Placement& placement) const {
     const size_t path = placement.block - given_.front().block;
@@ -253,10 +263,14 @@ class LayerMerge {
   }
 
   const LayerWriter& writer_;
+  KnownTravels& travels_;
   const MergeRules& rules_;
   const LayerOrder given_;
-  KnownTravels travels_;
-  const TravelEstimate estimate_ = std::ref(travels_);
+  std::vector<uint32_t> places_;  // [place] of the orders asked about, in the file; empty: the same
+  const TravelEstimate estimate_ = [this](size_t place, const Placement& from,
+                                          const Placement& to) {
+    return TravelTo(place, from, to);
+  };
   const TravelTotals were_;
   const OrderMerger strict_;  // keeps to what holds for the layer
   const OrderMerger quick_;   // but for its crossings
@@ -265,76 +279,66 @@ class LayerMerge {
 
 }  // namespace
 
-std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
-  std::vector<bool> boundaries;
-  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
-    boundaries.push_back(IsBoundary(file.blocks[b]));
-  }
-  return boundaries;
-}
-
 MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
                       const Allowance& allow, const std::optional<PolishLimit>& polish) {
   MergeRules rules;
   rules.policy = policy;
-  rules.boundaries = BoundariesOf(file, layer);
   rules.polish = polish;
   if (polish) rules.freedom = FreedomOf(file, layer, policy, allow);
   return rules;
 }
 
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const LayerOrder& found,
+std::vector<LayerOrder> MergedOrders(KnownTravels& travels, const LayerOrder& found,
                                      const MergeRules& rules) {
-  if (!IsWhole(found, writer.GivenOrder())) return {found};
-  return LayerMerge(writer, rules).Merge(found);
+  if (!IsWhole(found, travels.writer().GivenOrder())) return {found};
+  return LayerMerge(travels, rules).Merge(found);
 }
 
-std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const LayerOrder& order,
+std::optional<LayerOrder> RepairedOrder(KnownTravels& travels, const LayerOrder& order,
                                         const MergeRules& rules, const LayerFreedom& freedom,
                                         size_t reach) {
-  if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
-  return LayerMerge(writer, rules).Repair(order, freedom, reach);
+  if (!IsWhole(order, travels.writer().GivenOrder())) return std::nullopt;
+  return LayerMerge(travels, rules).Repair(order, freedom, reach);
 }
 
-TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
+TurnedLayer TurnedOrders(KnownTravels& travels, const TravelModel& travel,
                          const std::vector<LayerOrder>& orders, const MergeRules& rules,
                          const LayerFreedom& freedom,
                          const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
                          const std::vector<double>& moments) {
   std::vector<LayerOrder> whole;
   for (const LayerOrder& order : orders) {
-    if (IsWhole(order, writer.GivenOrder())) whole.push_back(order);
+    if (IsWhole(order, travels.writer().GivenOrder())) whole.push_back(order);
   }
-  const LayerMerge merge(writer, rules);
+  const LayerMerge merge(travels, rules);
   return merge.Turn(whole, freedom, islands, rest_seconds,
                     merge.ClockOf(moments, travel.speed_mm_s));
 }
 
-LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
-                         const MergeRules& rules, const std::vector<uint32_t>& units) {
-  return LayerMerge(writer, rules).SettleWithin(order, units);
+LayerOrder SettledWithin(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules,
+                         const std::vector<uint32_t>& units) {
+  return LayerMerge(travels, rules).SettleWithin(order, units);
 }
 
-std::vector<LayerOrder> SettledOrders(const LayerWriter& writer, std::vector<LayerOrder> orders,
+std::vector<LayerOrder> SettledOrders(KnownTravels& travels, std::vector<LayerOrder> orders,
                                       const MergeRules& rules) {
-  LayerMerge merge(writer, rules);
+  LayerMerge merge(travels, rules);
   for (LayerOrder& order : orders) {
-    if (!IsWhole(order, writer.GivenOrder())) continue;
+    if (!IsWhole(order, travels.writer().GivenOrder())) continue;
     order = merge.Improve(order, OrderPolisher::Effort::kSettle);
   }
   return orders;
 }
 
-LayerOrder KickedOrder(const LayerWriter& writer, const LayerOrder& order,
-                       const MergeRules& rules) {
-  if (!IsWhole(order, writer.GivenOrder())) return order;
-  return LayerMerge(writer, rules).Improve(order, OrderPolisher::Effort::kKick);
+LayerOrder KickedOrder(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules) {
+  if (!IsWhole(order, travels.writer().GivenOrder())) return order;
+  return LayerMerge(travels, rules).Improve(order, OrderPolisher::Effort::kKick);
 }
 
-std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,
+std::vector<LayerOrder> SparingOrders(KnownTravels& travels, const LayerOrder& order,
                                       const MergeRules& rules) {
-  if (!IsWhole(order, writer.GivenOrder())) return {};
-  return LayerMerge(writer, rules).Spare(order);
+  if (!IsWhole(order, travels.writer().GivenOrder())) return {};
+  return LayerMerge(travels, rules).Spare(order);
 }
 
 }  // namespace traverse::gcode

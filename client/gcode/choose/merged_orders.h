@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/choose/order_polish.h"
 #include "client/gcode/choose/order_repair.h"
@@ -13,7 +14,6 @@
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
-#include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode {
 
@@ -22,9 +22,6 @@ struct MergeRules {
   Policy policy = Policy::kSafe;
   Crossings crossings = Crossings::kKeep;
   bool as_many_retractions = false;  // each pushes a little more or less than it pulls
-
-  // [place] the file has something here that nothing may cross.
-  std::vector<bool> boundaries;
 
   // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
   // and for how long. Either both are set or none.
@@ -35,9 +32,6 @@ struct MergeRules {
   const LinkSet* refused = nullptr;
 };
 
-// MergeRules::boundaries of `layer`.
-std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer);
-
 // The rules by which orders of `layer` are merged under `policy`, with what else `allow` allows;
 // with small changes if `polish` says for how long.
 MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
@@ -47,26 +41,26 @@ MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
 // far as estimates tell (order_merge.h): in a few ways, of which only the best stays where it
 // begins and ends with the same paths as the file. Where IsFree(policy) it is also tried with its
 // paths in the order of the file.
-std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const LayerOrder& found,
+std::vector<LayerOrder> MergedOrders(KnownTravels& travels, const LayerOrder& found,
                                      const MergeRules& rules);
 
 // `order` without the links that `rules` refuse, or as few of them as can be had by changes around
 // each; for a layer of freedom `freedom`. With greater `reach`, more paths around each are as
 // sliced at the most. Unset if all of them stay.
-std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const LayerOrder& order,
+std::optional<LayerOrder> RepairedOrder(KnownTravels& travels, const LayerOrder& order,
                                         const MergeRules& rules, const LayerFreedom& freedom,
                                         size_t reach);
 
 // `order`, one of MergedOrders, improved once more in two ways so that it retracts less. Its first
 // and last path stay. REQUIRES: rules.freedom, rules.polish.
-std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const LayerOrder& order,
+std::vector<LayerOrder> SparingOrders(KnownTravels& travels, const LayerOrder& order,
                                       const MergeRules& rules);
 
 // The turns of `orders` that may be chosen where islands must rest, for a layer of freedom
 // `freedom`. `islands` as IslandTurns takes them; for `rest_seconds` they rest at the most;
 // `moments`: when each path begins and ends in the file's own order. Of the result `given_times`
 // and the travel to the layer are left to be set.
-TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
+TurnedLayer TurnedOrders(KnownTravels& travels, const TravelModel& travel,
                          const std::vector<LayerOrder>& orders, const MergeRules& rules,
                          const LayerFreedom& freedom,
                          const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
@@ -74,17 +68,17 @@ TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
 
 // `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
 // rules.polish.
-LayerOrder SettledWithin(const LayerWriter& writer, const LayerOrder& order,
-                         const MergeRules& rules, const std::vector<uint32_t>& units);
+LayerOrder SettledWithin(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules,
+                         const std::vector<uint32_t>& units);
 
 // `orders`, in which whole objects have changed places, improved within each of them.
 // REQUIRES: rules.freedom, rules.polish.
-std::vector<LayerOrder> SettledOrders(const LayerWriter& writer, std::vector<LayerOrder> orders,
+std::vector<LayerOrder> SettledOrders(KnownTravels& travels, std::vector<LayerOrder> orders,
                                       const MergeRules& rules);
 
 // `order` improved with kicks (order_polish.h), which take long: for the one that was chosen. Its
 // first and last path stay. REQUIRES: rules.freedom, rules.polish.
-LayerOrder KickedOrder(const LayerWriter& writer, const LayerOrder& order, const MergeRules& rules);
+LayerOrder KickedOrder(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules);
 
 }  // namespace traverse::gcode
 

@@ -323,7 +323,7 @@ void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, const MergeR
       moved.push_back(std::move(order));
     }
   }
-  if (rules.polish) moved = SettledOrders(*column.writer, std::move(moved), rules);
+  if (rules.polish) moved = SettledOrders(column.travels(), std::move(moved), rules);
   for (const LayerOrder& order : moved) filler.Add(order, layer, column);
 }
 

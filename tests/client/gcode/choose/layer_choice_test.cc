@@ -94,13 +94,13 @@ TEST(LayerChooser, ImprovesWhatItChoseBeyondSmallChanges) {
     const LayerWriter writer(*file, layer, habit, donors);
     MergeRules rules;
     rules.policy = Policy::kFree;
-    rules.boundaries = BoundariesOf(*file, layer);
     rules.freedom = FreedomOf(*file, layer, Policy::kFree, {});
     rules.polish = PolishLimit();
     LayerOrder found = writer.GivenOrder();
     std::reverse(found.begin() + 1, found.end() - 1);
     double least = std::numeric_limits<double>::infinity();
-    for (const LayerOrder& order : MergedOrders(writer, found, rules)) {
+    KnownTravels travels(writer);
+    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
       least = std::min(least, ForecastPaths(writer, order));
     }
     settled += least;

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_format.h"
 #include "client/gcode/choose/known_travels.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/machine/motion_planner.h"
@@ -66,9 +65,9 @@ TEST_F(MergedOrdersTest, HaveNoOpenTravelAcrossWallsThatIsLongerThanTheFiles) {
   MergeRules rules;
   rules.policy = Policy::kFree;
   rules.crossings = Crossings::kAny;
-  rules.boundaries.assign(found.size(), false);
 
-  const std::vector<LayerOrder> merged = MergedOrders(*writer_, found, rules);
+  KnownTravels travels(*writer_);
+  const std::vector<LayerOrder> merged = MergedOrders(travels, found, rules);
 
   ASSERT_FALSE(merged.empty());
   for (const LayerOrder& order : merged) {
@@ -91,8 +90,8 @@ TEST_F(MergedOrdersTest, TheBestMayTravelFurtherThanTheFile) {
   const LayerOrder found = OrderOf({0, 1, 3, 2, 4});
   MergeRules rules;
   rules.crossings = Crossings::kFewer;
-  rules.boundaries.assign(found.size(), false);
-  const std::vector<LayerOrder> orders = MergedOrders(writer, found, rules);
+  KnownTravels travels(writer);
+  const std::vector<LayerOrder> orders = MergedOrders(travels, found, rules);
 
   // Once as what only the whole file can tell to cross too many walls, and once as the best of all
   // that keep to the limits.
@@ -115,9 +114,9 @@ TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   const LayerOrder found = OrderOf({0, 1, 3, 2, 4, 5, 7, 6, 8});
   MergeRules rules;
   rules.policy = Policy::kBalanced;
-  rules.boundaries.assign(found.size(), false);
   const auto has = [&](const LayerOrder& order) {
-    const std::vector<LayerOrder> orders = MergedOrders(writer, found, rules);
+    KnownTravels travels(writer);
+    const std::vector<LayerOrder> orders = MergedOrders(travels, found, rules);
     return std::count(orders.begin(), orders.end(), order) > 0;
   };
   const LayerOrder sparing = OrderOf({0, 1, 3, 2, 4, 5, 6, 7, 8});
@@ -144,10 +143,10 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   const LayerFreedom freedom = FreedomOf(*file, file->layers[0], Policy::kSafe, {});
   const PolishLimit limit;
   MergeRules rules;
-  rules.boundaries.assign(found.size(), false);
   const auto shortest = [&] {
     double mm = std::numeric_limits<double>::infinity();
-    for (const LayerOrder& order : MergedOrders(writer, found, rules)) {
+    KnownTravels travels(writer);
+    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
       TravelTotals totals;
       for (size_t i = 1; i < order.size(); ++i) {
         totals += writer.EstimateTravel(i, order[i - 1], order[i]);
@@ -224,11 +223,11 @@ TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
   const LayerOrder found = {{1, 3, true}, {0, 2, true}, {2, 0, true}, {3, 3, true}};
   MergeRules rules;
   rules.crossings = Crossings::kAny;
-  rules.boundaries.assign(found.size(), false);
   const auto shortest_mm = [&](Policy policy) {
     rules.policy = policy;
     double least = 1e9;
-    for (const LayerOrder& order : MergedOrders(writer, found, rules)) {
+    KnownTravels travels(writer);
+    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
       double mm = 0;
       for (size_t i = 1; i < order.size(); ++i) {
         mm += writer.EstimateTravel(i, order[i - 1], order[i]).mm;
@@ -262,49 +261,16 @@ TEST_F(MergedOrdersTest, SparingOrdersRetractLess) {
   const LayerOrder often = OrderOf({0, 1, 4, 2, 5, 3, 6, 7});
   MergeRules rules;
   rules.policy = Policy::kFree;
-  rules.boundaries.assign(often.size(), false);
   rules.freedom = FreedomOf(*file, file->layers[0], Policy::kFree, {});
   rules.polish = PolishLimit();
 
-  const std::vector<LayerOrder> sparing = SparingOrders(writer, often, rules);
+  KnownTravels travels(writer);
+  const std::vector<LayerOrder> sparing = SparingOrders(travels, often, rules);
 
   const int64_t given = retractions(writer.GivenOrder());
   ASSERT_GT(retractions(often), given);
   ASSERT_FALSE(sparing.empty());
   for (const LayerOrder& order : sparing) EXPECT_LE(retractions(order), given);
-}
-
-// What is known of the travel in one order holds in the next, whose objects stand elsewhere: the
-// head waits between objects.
-TEST_F(MergedOrdersTest, TravelIsKnownWhereverObjectsStand) {
-  std::string text = "M83\nG1 Z.2 F9000\n";
-  for (const auto& [object, lines] : {std::pair(0, 6), {2, 3}, {1, 8}, {3, 4}}) {
-    text += absl::StrFormat("EXCLUDE_OBJECT_START NAME=part_%d\n", object);
-    for (int y = 0; y < lines; ++y) {
-      text += absl::StrFormat("G1 X%d Y%d F9000\n;TYPE:Internal infill\nG1 X%d F1200 E.5\n",
-                              40 * object, 5 * y, 40 * object + 10);
-    }
-    text += absl::StrFormat("EXCLUDE_OBJECT_END NAME=part_%d\nG4 P%d\n", object, 500 + object);
-  }
-  const std::shared_ptr<GcodeFile> file = *ReadGcode(text, "part.gcode");
-  const RetractionHabit habit = LearnRetraction(*file);
-  const LinkDonors donors(*file);
-  const LayerWriter writer(*file, file->layers[0], habit, donors);
-  MergeRules rules;
-  rules.boundaries = BoundariesOf(*file, file->layers[0]);
-  const LayerOrder given = writer.GivenOrder();
-  LayerOrder moved = given;
-  std::rotate(moved.begin() + 6, moved.begin() + 9, moved.begin() + 17);
-  KnownTravels travels(writer, rules);
-  for (const LayerOrder& order : {given, moved, given}) {
-    const std::vector<uint32_t> places = writer.PlacesOf(order);
-    travels.SetPlaces(places);
-    for (size_t i = 1; i < order.size(); ++i) {
-      EXPECT_DOUBLE_EQ(travels(i, order[i - 1], order[i]).seconds,
-                       writer.EstimateTravel(places[i], order[i - 1], order[i]).seconds)
-          << i;
-    }
-  }
 }
 
 }  // namespace
