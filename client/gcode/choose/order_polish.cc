@@ -29,8 +29,8 @@ constexpr uint32_t kLongestKicked = 12;
 // Travel that costs at most this much more may cost less with other entries.
 constexpr double kSlackSeconds = 0.02;
 
-// After so many ways for each path it is looked whether the last of them were worth it.
-constexpr size_t kWindowEach = 600;
+// After so many estimates for each path it is looked whether the last of them were worth it.
+constexpr size_t kWindowEach = 300;
 
 }  // namespace
 

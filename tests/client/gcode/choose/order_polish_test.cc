@@ -285,7 +285,7 @@ TEST(OrderPolisher, KicksFindWhatNoSingleChangeDoes) {
     EXPECT_LE(kicked, settled + 1e-9) << seed;
     better += kicked < settled - 1e-6 ? 1 : 0;
   }
-  EXPECT_GE(better, 8);
+  EXPECT_GE(better, 5);
 }
 
 TEST(OrderPolisher, GivesUpSoonerWhereEstimatesTakeLonger) {
