@@ -148,7 +148,7 @@ std::optional<VerifyBreak> DifferenceIn(BothSides& sides, size_t i, size_t end_o
   if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
   if (was.header != is.header) return HeaderDifference(part_was, part_is);
   // Where paths change places, what is said of them does so too.
-  if (was.order == is.order && was.said != is.said) {
+  if (was.order == is.order && (was.said != is.said || was.told != is.told)) {
     return differ("the order of the comments differs from");
   }
   if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {

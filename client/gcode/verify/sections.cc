@@ -79,10 +79,12 @@ void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
 void SectionCutter::TakeLoose(uint64_t position) {
   section_.notes += loose_notes_;
   loose_notes_ = {};
-  for (const uint64_t digest : loose_said_) {
-    section_.said = Mix(section_.said, Mix(digest, position));
-  }
-  loose_said_.clear();
+  const auto take = [position](std::vector<uint64_t>& loose, uint64_t& digest) {
+    for (const uint64_t one : loose) digest = Mix(digest, Mix(one, position));
+    loose.clear();
+  };
+  take(loose_said_, section_.said);
+  take(loose_told_, section_.told);
 }
 
 SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachine& machine,
@@ -118,7 +120,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       TakeLoose(section_.deposits.count);
       break;
     case LineRole::kComment:
-      loose_said_.push_back(line.digest);
+      (line.command == 0 ? loose_said_ : loose_told_).push_back(line.digest);
       loose_notes_.Add(line.digest);
       break;
     case LineRole::kFence:
@@ -163,6 +165,7 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   const size_t first_note = std::max(last_deposit_ + 1, section_.first_note);
   const DigestSet notes = std::exchange(loose_notes_, {});
   std::vector<uint64_t> said = std::exchange(loose_said_, {});
+  std::vector<uint64_t> told = std::exchange(loose_told_, {});
   Close(machine, last_line_, 0, false);
   // Behind the mark of a layer the first path is of that one.
   cut_.sections.back().ends_layer = std::exchange(layer_prints_, false);
@@ -170,6 +173,7 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   section_.first_note = first_note;
   loose_notes_ = notes;
   loose_said_ = std::move(said);
+  loose_told_ = std::move(told);
 }
 
 void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,

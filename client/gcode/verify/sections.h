@@ -54,10 +54,11 @@ struct Section {
   bool command = false;  // it ends with a command
   uint64_t header = 0;   // of the comments between the mark of a layer and the first travel
 
-  // Of deposits, and of comments with their place among these, in their order; notes say to which
-  // section comments belong.
+  // Of deposits, and of comments and of commands that only say something, each with their place
+  // among these, in their order; notes say to which section they belong.
   uint64_t order = 0;
   uint64_t said = 0;
+  uint64_t told = 0;
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
   uint64_t fence = 0;
@@ -131,6 +132,7 @@ class SectionCutter {
   Section section_;
   DigestSet loose_notes_;             // since the last deposit
   std::vector<uint64_t> loose_said_;  // comments among them
+  std::vector<uint64_t> loose_told_;  // commands among them
   size_t last_line_ = 0;
   size_t last_deposit_ = 0;
   bool in_script_;

@@ -67,6 +67,16 @@ TEST(SamePrint, CommandsThatChangeNothingStandWhereCommentsMay) {
   }
 }
 
+// A comment goes with its path, and a question of the host stays with the retraction.
+TEST(SamePrint, CommandsThatSaySomethingAndCommentsPassEachOtherBetweenPaths) {
+  const auto print = [](const std::string& said) { return kHead + kOne + said + kOther; };
+  const std::string both = print("; here\nM105\nM117 here\n");
+  EXPECT_EQ(Broken(both, print("M105\n; here\nM117 here\n")), "");
+  EXPECT_EQ(Broken(both, print("; here\nM117 here\nM105\n")), "same_print");
+  EXPECT_EQ(Broken(both, kHead + "; here\n" + kOne + "M105\nM117 here\n" + kOther), "same_print");
+  EXPECT_EQ(Broken(both, kHead + "M105\n" + kOne + "; here\nM117 here\n" + kOther), "same_print");
+}
+
 TEST(SamePrint, CommandsThatMayChangeSomethingStay) {
   for (const char* line : {"M104 S200\n", "M104 S215 T1\n", "M118 here\n", "M155 S1\n"}) {
     const std::string head = kHead + "M104 S215\n" + kSquare;
