@@ -125,6 +125,8 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       break;
     case LineRole::kFence:
     case LineRole::kFixed:
+      // Where it waits for the picture, it drips or not.
+      if (line.photo) section_.retracted = machine.retracted();
       Close(machine, line.number, line.digest, line.role == LineRole::kFixed, line.label);
       cut_.sections.back().command = line.text.front() != ';';
       cut_.sections.back().ends_layer = mark;

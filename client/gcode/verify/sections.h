@@ -74,7 +74,7 @@ struct Section {
   Micro x = 0;                // of the head there, if the line is fixed
   Micro y = 0;
   Micro z = 0;
-  bool retracted = false;  // at labels of objects, too
+  bool retracted = false;  // at labels of objects and pictures, too
   Micro lift = 0;          // how far above what was printed last, at labels of objects
   uint64_t settings = 0;
   uint64_t fan = 0;

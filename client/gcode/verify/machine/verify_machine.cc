@@ -459,10 +459,10 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     return Fence(line, LineRole::kFence);
   }
   if (ObjectLabels::IsOfHost(text)) return Fence(line, LineRole::kFence);
-  // Macros that move nothing, or lead the head away for a picture and back.
   const std::string_view name = text.substr(0, text.find_first_of(" \t;"));
-  for (const std::string_view macro :
-       {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO", "M622.1"}) {
+  line.photo = EqualsInAnyCase(name, "TIMELAPSE_TAKE_FRAME");
+  if (line.photo) return Fence(line, LineRole::kFence);
+  for (const std::string_view macro : {"TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO", "M622.1"}) {
     if (EqualsInAnyCase(name, macro)) return Fence(line, LineRole::kFence);
   }
   // What the next tool, or filament, has in its nozzle is not known.

@@ -46,6 +46,7 @@ struct VerifyLine {
   bool sets = false;       // a setting and nothing else, by a command
   uint64_t command = 0;    // what is set or done, without its values; 0: moves, comments, G92 E
   bool label = false;      // of an object, whose moves a printer may be told to leave out
+  bool photo = false;      // a macro leads the head away for a picture, and back
   bool sets_fan = false;   // a fan, to whatever value
   bool sets_back = false;  // gives a setting a value that it had, and lost, since the last move
 };

@@ -77,6 +77,15 @@ TEST(SamePrint, CommandsThatSaySomethingAndCommentsPassEachOtherBetweenPaths) {
   EXPECT_EQ(Broken(both, kHead + "M105\n" + kOne + "; here\nM117 here\n" + kOther), "same_print");
 }
 
+TEST(SamePrint, PicturesAreTakenWithTheFilamentPulledBackAsItWas) {
+  const std::string print =
+      kHead + kOne + "G1 E-.8 F2100\nTIMELAPSE_TAKE_FRAME\nG1 E.8 F2100\n" + kOther;
+  EXPECT_EQ(Broken(print, print), "");
+  EXPECT_EQ(Broken(print, With(print, "G1 E-.8 F2100\nTIMELAPSE_TAKE_FRAME\n",
+                               "TIMELAPSE_TAKE_FRAME\nG1 E-.8 F2100\n")),
+            "same_print");
+}
+
 TEST(SamePrint, CommandsThatMayChangeSomethingStay) {
   for (const char* line : {"M104 S200\n", "M104 S215 T1\n", "M118 here\n", "M155 S1\n"}) {
     const std::string head = kHead + "M104 S215\n" + kSquare;
