@@ -86,7 +86,7 @@ class WallGrid {
   int Row(double y) const { return Cell((y - low_.y) * per_mm_, rows_); }
 
   // Calls visit(row, first column, last column) for the rows of cells that contain the line, or
-  // are as near to it as `beside_mm`.
+  // are as near to it as `beside_mm`, until it returns false.
   template <typename Visit>
   void ForEachRow(Point a, Point b, double beside_mm, Visit visit) const;
   void SizeCells(Rest& rest);
@@ -148,7 +148,10 @@ void WallGrid::ForEachOnLine(Point a, Point b, Visit visit, double beside_mm) co
     const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
     const uint32_t begin = first_[cell + static_cast<size_t>(first)];
     const uint32_t end = first_[cell + static_cast<size_t>(last) + 1];
-    return std::all_of(entries_.begin() + begin, entries_.begin() + end, visit);
+    for (uint32_t i = begin; i < end; ++i) {
+      if (!visit(entries_[i])) return false;
+    }
+    return true;
   });
 }
 
