@@ -292,7 +292,8 @@ class WallDetours::Sight {
 };
 
 // The last bend up to which those behind bend `at` are in sight past the corners that they pass;
-// the next one at least, and whatever other walls are in the way.
+// the next one at least, and whatever other walls are in the way. That is no further than one wall
+// is followed: the next one stands in its own way.
 size_t WallDetours::LastInSight(const Bends& detour, size_t at) {
   Sight sight(detour[at]);
   size_t last = at + 1;
@@ -314,10 +315,11 @@ std::vector<Point> WallDetours::PulledTaut(const Bends& detour, MoveEnds ends, i
   };
   std::vector<Point> taut = {detour.front().at};
   for (size_t at = 0; at + 1 < detour.size();) {
-    size_t next = LastInSight(detour, at);
-    if (crosses(at, next)) {
+    const size_t last = LastInSight(detour, at);
+    size_t next = last;
+    if (crosses(at, last)) {
       next = at + 1;
-      if (crosses(at, next)) {
+      if (last == next || crosses(at, next)) {
         if (depth == kMostDepth) return {};
         const std::vector<Point> around =
             OneDetour(detour[at].at, detour[next].at, ends_of(at, next), depth + 1, tests);
