@@ -28,12 +28,6 @@ int64_t Um(double mm) { return std::llround(mm * 1000); }
 
 bool IsSideways(const TraceMove* move) { return move->sideways(); }
 
-// A feed rate alone moves nothing, nor does rounding.
-bool MovesNothing(const TraceMove& move) {
-  return !move.firmware && move.filament == 0 && move.kind != MoveKind::kDwell &&
-         std::abs(move.z_from_mm - move.z_to_mm) <= kOneHeightMm && move.length_mm() < kLeastMoveMm;
-}
-
 bool IsAtTheSameHeight(const PartStep& a, const PartStep& b) {
   return std::abs(a.above_um - b.above_um) <= kSlackUm ||
          std::abs(a.behind_um - b.behind_um) <= kSlackUm;
@@ -90,7 +84,7 @@ LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
   for (uint32_t m = traced.first_move + std::max(skipped, fixed); m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (last && move.z_from_mm != move.z_to_mm) break;
-    if (move.in_print && !MovesNothing(move)) moves_.push_back(&move);
+    if (move.in_print && !move.IsNothing(kLeastMoveMm)) moves_.push_back(&move);
   }
   if (moves_.empty()) return;
   from_mm_ = moves_.front()->z_from_mm;

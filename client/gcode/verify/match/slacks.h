@@ -6,10 +6,9 @@
 
 namespace traverse::gcode {
 
-// Points and heights no farther apart are the same, but for rounding; and heights by arithmetic.
+// Points and heights no farther apart are the same, but for rounding.
 inline constexpr double kSamePointMm = 0.02;
 inline constexpr double kHeightSlackMm = 0.003;
-inline constexpr double kOneHeightMm = 1e-4;
 
 // What lies so near to a path lies on it.
 inline constexpr double kOnPathMm = 0.05;

@@ -1,6 +1,7 @@
 // All in all the primes push as much more than was retracted as in the original: differences that
 // are too small for the parts of one link (travel/made_of_parts.cc) add up.
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "absl/strings/str_format.h"
@@ -51,8 +52,10 @@ void ObservePrimes(const LayerPair& layer, LayerFindings& findings) {
 void ComparePrimes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   constexpr Micro kOfEach = 20;
   const Micro off = is.primes.surplus - was.primes.surplus;
-  const Micro slack =
-      kRounding * (1 + std::abs(is.primes.links - was.primes.links)) + kOfEach * is.primes.links;
+  const Micro most_of_link =
+      std::max(std::abs(was.primes.most.surplus), std::abs(was.primes.least.surplus));
+  const Micro slack = kRounding + most_of_link * std::abs(is.primes.links - was.primes.links) +
+                      kOfEach * is.primes.links;
   if (std::abs(off) <= slack) return;
   const PrimeBalance::Odd& odd = off > 0 ? is.primes.most : is.primes.least;
   breaks.push_back(

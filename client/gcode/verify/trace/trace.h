@@ -57,6 +57,9 @@ struct TracePath {
   uint32_t size() const { return end_segment - first_segment; }
 };
 
+// Heights no farther apart are one, but for arithmetic.
+inline constexpr double kOneHeightMm = 1e-4;
+
 enum class MoveKind : uint8_t {
   kTravel,  // sideways, no filament
   kWipe,    // sideways, retracting
@@ -94,6 +97,10 @@ struct TraceMove {
 
   bool sideways() const { return kind == MoveKind::kTravel || kind == MoveKind::kWipe; }
   double length_mm() const;
+
+  // A feed rate alone, or what rounding left: nothing is moved by `least_mm` or farther, nor waited
+  // for.
+  bool IsNothing(double least_mm) const;
 };
 
 struct TraceLink {

@@ -112,6 +112,11 @@ std::string_view MoveKindName(MoveKind kind) {
 
 double TraceMove::length_mm() const { return std::hypot(to.x - from.x, to.y - from.y); }
 
+bool TraceMove::IsNothing(double least_mm) const {
+  return !firmware && !arc && filament == 0 && kind != MoveKind::kDwell &&
+         std::abs(z_from_mm - z_to_mm) <= kOneHeightMm && length_mm() < least_mm;
+}
+
 void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   if (line.text.empty()) return;
   const double before_seconds = clock_.seconds();
@@ -232,7 +237,7 @@ bool Tracer::IsAside(Point at, Point begin) const {
 // What leads aside on the way to a layer no lower, or to the first one, and back, is a script like
 // unknown lines: up to there it stays as it is.
 void Tracer::FixExcursion(Point begin, double z_mm) {
-  const bool sinks = !link_.first && z_mm < printed_mm_ - kSameHeightMm;
+  const bool sinks = !link_.first && z_mm < printed_mm_ - kOneHeightMm;
   if (!link_.new_layer || sinks) return;
   bool arrived = false;
   for (size_t m = pending_.size(); m-- > link_.fixed && pending_[m].in_print;) {

@@ -37,8 +37,6 @@ class Tracer {
   TraceChunk TakeChunk(uint32_t end_section, bool last_of_file);
 
  private:
-  static constexpr double kSameHeightMm = 1e-6;
-
   void TakeComment(const VerifyLine& line, uint32_t section);
   void TakeWipeMark(bool begins, uint32_t line, uint32_t section);
   void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);

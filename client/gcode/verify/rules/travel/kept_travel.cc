@@ -31,9 +31,7 @@ std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
   std::vector<TraceMove> moves;
   for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    const bool nothing = !move.firmware && move.filament == 0 && !move.arc &&
-                         move.z_from_mm == move.z_to_mm && move.length_mm() < kSamePointMm;
-    if (nothing) continue;
+    if (move.IsNothing(kSamePointMm)) continue;
     if (!moves.empty() && GoesOn(moves.back(), move)) {
       moves.back().to = move.to;
       moves.back().middle = {(moves.back().from.x + move.to.x) / 2,

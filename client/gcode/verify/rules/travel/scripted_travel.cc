@@ -31,18 +31,13 @@ struct TravelStep {
   }
 };
 
-bool IsNothing(const TraceMove& move) {
-  return !move.firmware && move.filament == 0 && move.z_from_mm == move.z_to_mm &&
-         move.length_mm() < kLeastMoveMm;
-}
-
 // What the link to `path` does behind its last unknown line.
 std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path) {
   std::vector<TravelStep> steps;
   const TraceLink& link = chunk.links[path];
   for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (IsNothing(move)) continue;
+    if (move.IsNothing(kLeastMoveMm)) continue;
     const bool wipes = move.kind == MoveKind::kWipe;
     const Micro filament = wipes ? 0 : move.filament;
     const TravelStep step{move.kind, move.z_to_mm,      filament,  move.feed,

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "absl/strings/str_replace.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -55,6 +56,24 @@ TEST(VerifyRetractions, PrimeNoMoreAllInAll) {
   EXPECT_EQ(Broken(a, With(a, "G1 E1 F2100\n", "G1 E1.0001 F2100\n")), "");
   EXPECT_EQ(Broken(a, more), "retractions");
   EXPECT_EQ(Broken(more, a), "retractions");
+}
+
+// Where more links retract than in the original, of which each returns just what it took.
+TEST(VerifyRetractions, PrimeNoMoreInLinksThatDidNotRetract) {
+  std::string a = kHead;
+  std::string b = kHead;
+  for (int y = 0; y < 200; ++y) {
+    const std::string to = absl::StrCat("X0 Y", y);
+    const std::string line = Line("Internal infill", to, absl::StrCat("X9 Y", y));
+    a += y % 10 == 0 ? line : With(line, Travel(to), "G1 " + to + " F9000\n");
+    b += line;
+  }
+  const auto primed = [&b](const std::string& amount) {
+    return absl::StrReplaceAll(b, {{"G1 E1 F2100\n", "G1 E" + amount + " F2100\n"}});
+  };
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(a, primed("1.0001")), "retractions");
+  EXPECT_EQ(Broken(a, primed("1.00001")), "");
 }
 
 TEST(VerifyRetractions, MayBeMoreOrFewer) {

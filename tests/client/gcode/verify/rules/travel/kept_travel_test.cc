@@ -45,6 +45,12 @@ TEST(VerifyKeptTravels, FilamentIsPulledWhereItWas) {
   EXPECT_EQ(Kept(late, late), "");
 }
 
+TEST(VerifyKeptTravels, WaitAsLongAsTheyDid) {
+  const std::string waits = With(kPrint, kTo + "G1 E1 F2100\n", kTo + "G4 P200\nG1 E1 F2100\n");
+  EXPECT_EQ(Kept(waits, waits), "");
+  EXPECT_EQ(Kept(waits, With(waits, "G4 P200", "G4 P5000")), "kept_travel");
+}
+
 TEST(VerifyKeptTravels, AmountsAndSpeedsStay) {
   const std::string from = kOne + kPull;
   EXPECT_EQ(Kept(kPrint, With(kPrint, from + kTo + "G1 E1 F2100\n",
