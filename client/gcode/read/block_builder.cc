@@ -134,13 +134,15 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
     where_ = Where::kTail;
     return;
   }
+  // A tail of two moves may state its feed rate between them.
+  const bool in_tail = where_ == Where::kTail && step.kind == StepKind::kFeed;
   if (where_ == Where::kBody && (IsQuiet(step.kind) || IsSpeck(step))) {
     if (IsSpeck(step)) pending_ |= kBlockCommand;
     if (step.kind == StepKind::kComment || step.kind == StepKind::kSays) {
       pending_ |= kBlockComments;
     }
     if (step.kind == StepKind::kProgress) pending_ |= kBlockProgress;
-  } else if (where_ != Where::kHead) {
+  } else if (where_ != Where::kHead && !in_tail) {
     where_ = Where::kLink;
   }
   NoteInLink(step, before, after);

@@ -188,5 +188,19 @@ TEST(BlockBuilder, ATailThatGoesOnStaysWithItsPath) {
   EXPECT_FALSE(file->blocks[1].link & kLinkFixed);
 }
 
+// Slicers and post-processors write the feed rate on a line of its own, too.
+TEST(BlockBuilder, ATailOfTwoMovesMayStateItsFeedRateBetweenThem) {
+  const std::string path = "M83\nG1 X0 Y0 F9000\nG1 F1200 X5 E1\n";
+  const std::string next = "G1 F9000\nG1 X0 Y9\nG1 F1200\nG1 X5 E1\n";
+  const auto file = Read(path + "G1 F1200\nG1 X5.5\nG1 F1200\nG1 X6 Y.1\n" + next);
+
+  ASSERT_EQ(file->blocks.size(), 2u);
+  EXPECT_TRUE(file->blocks[0].flags & kBlockTail);
+  EXPECT_EQ(ToDouble(file->blocks[0].last.x), 6);
+  // What is faster is travel.
+  const auto travels = Read(path + "G1 F1200\nG1 X5.5\nG1 F1300\nG1 X6 Y.1\n" + next);
+  EXPECT_EQ(ToDouble(travels->blocks[0].last.x), 5.5);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
