@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -44,7 +43,6 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
 }
 
 // Rounding of sums of filament.
-constexpr double kLeastExtraMm = 1e-6;
 
 // Longer than any travel.
 constexpr double kNeverMm = 1e7;
@@ -155,8 +153,7 @@ bool KeepsRetractions(const GcodeFile& file) {
     const Layer& layer = file.layers[file.layers.size() * i / (kLayers + 1)];
     const Block& first = file.blocks[layer.first_block];
     const PartStart start{StateAt(file, first), file.states[first.state_in]};
-    const double extra_mm = Measure(file, file.PathsText(layer), start).extra_mm;
-    if (std::abs(extra_mm) > kLeastExtraMm) return true;
+    if (Measure(file, file.PathsText(layer), start).PushesExtra()) return true;
   }
   return false;
 }

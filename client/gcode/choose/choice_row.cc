@@ -11,7 +11,7 @@ namespace traverse::gcode {
 namespace {
 
 // Rounding of sums of lengths.
-constexpr double kSlackMm = 1e-6;
+constexpr double kSlackMm = PrintTotals::kLeastExtraMm;
 
 // And of times.
 constexpr double kTimeSlack = 1e-9;

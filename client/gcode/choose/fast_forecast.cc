@@ -1,7 +1,6 @@
 #include "client/gcode/choose/fast_forecast.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,8 +17,6 @@ namespace {
 // Layers for each that is looked at: what that takes is little beside all that a file takes.
 constexpr size_t kOneIn = 16;
 constexpr size_t kLeast = 3;
-
-constexpr double kLeastPushedMm = 1e-6;
 
 // The layers before the first and behind the last one hide nothing.
 std::vector<size_t> TypicalLayers(const std::vector<LayerColumn>& columns) {
@@ -55,7 +52,7 @@ class FastSearch {
 
   Seconds Of(size_t layer, const LayerColumn& column, const TravelModel& travel) const {
     const Layer& of_file = file_.layers[layer];
-    const bool hides = std::abs(column.totals.inside[0].extra_mm) <= kLeastPushedMm;
+    const bool hides = !column.totals.inside[0].PushesExtra();
     const LayerWriter writer(file_, of_file, habit_, donors_, room_.Of(layer), hides, &travel);
     // As soon as fast itself gives up where it leads around walls: the rest changes little.
     const PolishLimit limit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};

@@ -1,7 +1,6 @@
 #include "client/gcode/choose/layer_choice.h"
 
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -21,9 +20,6 @@
 
 namespace traverse::gcode {
 namespace {
-
-// Rounding of sums of lengths.
-constexpr double kSlackMm = 1e-6;
 
 // What a crossing of a visible wall counts in rows of turned orders. If the file has too many
 // crossings, the second row has fewer.
@@ -164,7 +160,7 @@ class LayerChooser::Impl {
   MergeRules RulesOf(size_t layer) const {
     MergeRules rules = RulesUnder(file_, file_.layers[layer], policy_, allow_, polish_);
     rules.crossings = crossings_;
-    rules.as_many_retractions = std::abs(columns_[layer].totals.inside[0].extra_mm) > kSlackMm;
+    rules.as_many_retractions = columns_[layer].totals.inside[0].PushesExtra();
     if (polish_ && habit_.avoids_walls) {
       rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
     }

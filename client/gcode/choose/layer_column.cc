@@ -1,7 +1,6 @@
 #include "client/gcode/choose/layer_column.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -12,7 +11,6 @@ namespace traverse::gcode {
 namespace {
 
 // Filament pushed beyond what was retracted, in mm; less is rounding.
-constexpr double kLeastExtraMm = 1e-6;
 
 // As slicers write it: a sign that the extruder's register does not count through.
 bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
@@ -115,9 +113,7 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   choice.times = rests_.TimesOf(layer, choice.order, of_file.first_block, moments.seconds);
   column.given_moments = std::move(moments.seconds);
   column.given_travel_seconds = MeasureTravel(file_, of_file, walls).nominal_seconds;
-  if (!column.writer->hides() || std::abs(column.totals.inside[0].extra_mm) <= kLeastExtraMm) {
-    return;
-  }
+  if (!column.writer->hides() || !column.totals.inside[0].PushesExtra()) return;
   // Each retraction is part of what is printed.
   column.writer = WriterOf(layer, habit_, /*hides=*/false);
   choice.writer = column.writer.get();

@@ -211,11 +211,9 @@ void LinkComposer::Wipe(const Link& like) {
   for (size_t i = 0; i < retraced.size(); ++i) {
     const double share = LengthXy(i == 0 ? begin : retraced[i - 1], retraced[i]) / length;
     const bool last = i + 1 == retraced.size() && !shorter;
-    // Rounded as slicers write E: to hundredths of a micrometre.
-    constexpr Decimal kStep = kDecimalOne / 100'000;
-    const Decimal pull =
-        last ? left
-             : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
+    const Decimal pull = last ? left
+                              : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) /
+                                    kFilamentStep * kFilamentStep;
     left -= pull;
     link_.Segment(retraced[i], wipe.pulled > 0, -pull, wipe.feed);
   }

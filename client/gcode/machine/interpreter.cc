@@ -14,10 +14,6 @@ namespace {
 // So many commands are looked at for how a lift or a wait goes on.
 constexpr int kMostAhead = 16;
 
-// What waits so far from the paths on both sides waits for a script: beyond moves inwards, coasting
-// and wipes.
-constexpr double kAsideMm = 10;
-
 // kUnknown if it is none.
 StepKind KindOfMark(std::string_view line) {
   const Mark* mark = MarkOf(line);

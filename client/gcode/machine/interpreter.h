@@ -30,6 +30,10 @@ struct Position {
 // A primed nozzle may lack this much of what was retracted, because wipes round their parts.
 inline constexpr Decimal kRetractionSlack = kDecimalOne / 10'000;
 
+// Only scripts lead so far beyond what is printed, and wait there: slicers lead around walls, move
+// inwards, coast and wipe less far.
+inline constexpr double kAsideMm = 10;
+
 // The modal state of the machine, except what print_state.h has.
 struct MachineState {
   Position at;

@@ -9,12 +9,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Of what is pulled back in several moves, rounding may lose so much.
-constexpr Decimal kRounding = kDecimalOne / 10'000;
-
-// Slicers move in by about a line width before they leave a path.
-constexpr double kMaxDepartureMm = 1;
-
 double LengthXy(const Position& from, const Position& to) {
   const double dx = ToDouble(to.x - from.x);
   const double dy = ToDouble(to.y - from.y);
@@ -75,8 +69,9 @@ void PrintMeter::Follow(const Step& step, const MachineState& state) {
     case StepKind::kFilament: {
       if (step.filament < 0 && !step.retracted) ++totals_.retractions;
       const Decimal extra = step.filament - step.pulled;
-      const bool primes_short = step.filament > 0 && extra < -kRounding && state.retracted == 0;
-      if (extra > (step.pulled > 0 ? kRounding : 0) || primes_short) {
+      const bool primes_short =
+          step.filament > 0 && extra < -kRetractionSlack && state.retracted == 0;
+      if (extra > (step.pulled > 0 ? kRetractionSlack : 0) || primes_short) {
         totals_.extra_mm += ToDouble(extra);
       }
       return Stand(step, state);

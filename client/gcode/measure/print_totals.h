@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_TOTALS_H_
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace traverse::gcode {
@@ -20,6 +21,11 @@ struct PrintTotals {
   double extra_mm = 0;  // filament pushed at a standstill beyond what was retracted, or short of it
   double seconds = 0;   // see motion_planner.h for the model
   double nominal_seconds = 0;  // if every move is as fast as it states; dwells included
+
+  // Primes push more, or less, than was retracted, beyond what rounding does: then the number of
+  // retractions is a part of what is printed.
+  bool PushesExtra() const { return std::abs(extra_mm) > kLeastExtraMm; }
+  static constexpr double kLeastExtraMm = 1e-6;
 
   PrintTotals& operator+=(const PrintTotals& other) {
     extruded_mm += other.extruded_mm;

@@ -30,6 +30,9 @@
 namespace traverse {
 namespace gcode {
 
+// Slicers move in by about a line width before they leave a path.
+inline constexpr double kMaxDepartureMm = 1;
+
 // The parts of a link.
 enum LinkFlag : uint16_t {
   kLinkRetracts = 1 << 0,

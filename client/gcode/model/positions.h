@@ -12,6 +12,9 @@
 
 namespace traverse::gcode {
 
+// Filament is written as slicers do, to hundredths of a micrometre.
+inline constexpr Decimal kFilamentStep = kDecimalOne / 100'000;
+
 // New positions are written as slicers do, to thousandths of a mm; in longer units as finely at
 // least.
 inline Decimal RoundedWord(double value, double unit_mm) {

@@ -21,9 +21,6 @@ constexpr double kLeastLeft = 1;
 // A segment that goes on to the start of its loop is straight within rounding.
 constexpr double kStraightMm = 0.0015;
 
-// As slicers write filament.
-constexpr Decimal kFilamentStep = kDecimalOne / 100'000;
-
 // Filament per mm; 0 for arcs, and for what has no length.
 double RateOf(const BodySegment& segment) {
   const double length = LengthXy(segment.from, segment.to);

@@ -16,9 +16,6 @@ namespace {
 // A tail wipes the end of a line, or coasts to it; a longer move is travel.
 constexpr double kMaxTailMm = 2;
 
-// Slicers move in by about a line width before they leave a loop.
-constexpr double kMaxDepartureMm = 1;
-
 // Lines that may stand inside a path.
 bool IsQuiet(StepKind kind) {
   switch (kind) {
@@ -60,9 +57,7 @@ bool Heats(const Step& step) {
   return step.kind == StepKind::kStay && (c.Is('M', 104) || c.Is('M', 140) || c.Is('M', 142));
 }
 
-// Slicers lead around walls, or away from them, by less.
 bool ReachesFarBeyond(const BoundingBox& box, const BoundingBox& travel) {
-  constexpr double kAsideMm = 10;
   return travel.low().x < box.low().x - kAsideMm || travel.low().y < box.low().y - kAsideMm ||
          travel.high().x > box.high().x + kAsideMm || travel.high().y > box.high().y + kAsideMm;
 }
@@ -306,7 +301,6 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
 // The first move of the link leads along the beginning of the path before it, a closed one, and
 // not to the next path.
 bool BlockBuilder::GoesOn() const {
-  constexpr double kBesideMm = 0.05;
   const Block& block = Last();
   if (!link_.open_first_move || link_.xy_moves < 2 || block.end_count < 3 ||
       link_.first_move_mm > kMaxTailMm || !(link_.first_move_mm > 2 * kBesideMm)) {

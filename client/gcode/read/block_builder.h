@@ -25,6 +25,9 @@ class BlockBuilder {
   void Finish();
 
  private:
+  // A move that goes on along a path leads no farther beside it.
+  static constexpr double kBesideMm = 0.05;
+
   enum class Where { kHead, kBody, kTail, kLink };
 
   // A line that machines interpret differently.

@@ -25,7 +25,6 @@ void BlockBuilder::TakeTail(const Step& step, const MachineState& before,
 
 // The tail leads straight on from the path, or back to where that began.
 bool BlockBuilder::TailIsOwn() const {
-  constexpr double kBesideMm = 0.05;
   const Block& path = before_tail_;
   const MachineState& mode = file_.modes[path.mode];
   const Point tail = mode.InMm(Last().last);

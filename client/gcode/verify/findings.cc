@@ -1,5 +1,9 @@
 #include "client/gcode/verify/findings.h"
 
+#include <algorithm>
+
+#include "client/gcode/verify/match/slacks.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -29,7 +33,6 @@ void AddAt(const Seen& seen, Finding finding, std::vector<Finding>& breaks) {
 }
 
 bool LiftHeights::Have(int64_t um, bool is_level) const {
-  constexpr int64_t kSlackUm = 2;
   for (int64_t near = um - kSlackUm; near <= um + kSlackUm; ++near) {
     if (level.contains(near)) return true;
     if ((!is_level || level.empty()) && other.contains(near)) return true;

@@ -15,6 +15,9 @@ namespace traverse::gcode {
 using Micro = int64_t;
 using Nano = int64_t;
 
+inline constexpr double kMicro = 1e-6;
+inline constexpr double kInchMm = 25.4;
+
 // The nearest; of two the one farther from zero.
 inline Micro InMicros(Nano value) { return (value + (value < 0 ? -500 : 500)) / 1000; }
 

@@ -12,8 +12,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kPerMicro = 1e-6;
-
 bool IsOfWord(char c) { return UpperCase(c) >= 'A' && UpperCase(c) <= 'Z'; }
 bool IsOfNumber(char c) { return c >= '0' && c <= '9'; }
 
@@ -83,11 +81,11 @@ double PercentTold(std::string_view line) {
   if (line[0] == ';') return -1;
   if (BeginsInAnyCase(line, "M73")) {
     const CommandWords words(WordsOf(line));
-    return static_cast<double>(words.ValueOr('P', words.ValueOr('Q', -1'000'000))) * kPerMicro;
+    return static_cast<double>(words.ValueOr('P', words.ValueOr('Q', -1'000'000))) * kMicro;
   }
   if (BeginsInAnyCase(line, "M532")) {
     const CommandWords words(WordsOf(line));
-    return static_cast<double>(words.ValueOr('X', -1'000'000)) * kPerMicro;
+    return static_cast<double>(words.ValueOr('X', -1'000'000)) * kMicro;
   }
   const std::vector<Token> tokens = TokensOf(line);
   for (size_t i = 0; i < tokens.size(); ++i) {

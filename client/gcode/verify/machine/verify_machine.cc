@@ -130,7 +130,7 @@ void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
 // Where the head is, and what the register says, is the same in other units.
 void VerifyMachine::SwitchUnits(bool inches, VerifyLine& line) {
   if (inches != inches_) {
-    const double scale = inches ? 1 / 25.4 : 25.4;
+    const double scale = inches ? 1 / kInchMm : kInchMm;
     for (Micro* value : {&at_[0], &at_[1], &at_[2], &e_, &feed_, &pulled_, &deepest_}) {
       *value = std::llround(static_cast<double>(*value) * scale);
     }
@@ -203,7 +203,7 @@ void VerifyMachine::Wait(Micro milliseconds, VerifyLine& line) {
 
 bool VerifyMachine::IsFar(Micro x, Micro y) const {
   constexpr double kMostMicro = 10'000'000;  // slicers lead inwards, coast and wipe less far
-  const double scale = inches_ ? 25.4 : 1;
+  const double scale = inches_ ? kInchMm : 1;
   return scale * std::hypot(static_cast<double>(at_[0] - x), static_cast<double>(at_[1] - y)) >
          kMostMicro;
 }
@@ -366,7 +366,7 @@ bool VerifyMachine::IsCircular(const CommandWords& words, const std::array<Micro
   const auto j = static_cast<double>(words.ValueOr('J', 0));
   const double end_radius = std::hypot(static_cast<double>(at_[0] - from[0]) - i,
                                        static_cast<double>(at_[1] - from[1]) - j);
-  return std::abs(std::hypot(i, j) - end_radius) * (inches_ ? 25.4 : 1) <= kSlackMicro;
+  return std::abs(std::hypot(i, j) - end_radius) * (inches_ ? kInchMm : 1) <= kSlackMicro;
 }
 
 void VerifyMachine::Deposit(int number, const CommandWords& words, const std::array<Micro, 3>& from,

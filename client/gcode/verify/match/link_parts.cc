@@ -12,8 +12,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr int64_t kSlackUm = 2;
-
 // By what two words in inches are rounded.
 constexpr Micro kAmountSlack = 600;
 

@@ -13,12 +13,11 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/match/plane.h"
+#include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/visits.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kSameSpotMm = 1e-5;
 
 // Most loops with an equal segment that are examined.
 constexpr int kMostEqual = 16;

@@ -4,11 +4,19 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_SLACKS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_SLACKS_H_
 
+#include <cstdint>
+
 namespace traverse::gcode {
 
 // Points and heights no farther apart are the same, but for rounding.
 inline constexpr double kSamePointMm = 0.02;
 inline constexpr double kHeightSlackMm = 0.003;
+
+// The same of heights, and of slopes in 10 mm, in whole micrometres.
+inline constexpr int64_t kSlackUm = 2;
+
+// Points whose words are the same numbers, in whatever unit.
+inline constexpr double kSameSpotMm = 1e-5;
 
 // What lies so near to a path lies on it.
 inline constexpr double kOnPathMm = 0.05;

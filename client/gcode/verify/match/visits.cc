@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "client/gcode/verify/match/plane.h"
+#include "client/gcode/verify/match/slacks.h"
 
 namespace traverse::gcode {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr double kSamePlaceMm = 1e-5;
 
 // The gap of a loop, at most, where lines are not wide.
 constexpr double kUsualGapMm = 0.131;
@@ -118,7 +118,7 @@ class Matcher {
   bool IsForward(uint32_t s, Point start) const {
     const TracePath& path = original_.paths[path_of_[s - first_]];
     const double to_start = DistanceOf(original_.StartOf(path, s), start);
-    return to_start <= kSamePlaceMm || to_start <= DistanceOf(original_.segments[s].end, start);
+    return to_start <= kSameSpotMm || to_start <= DistanceOf(original_.segments[s].end, start);
   }
 
   // How many segments of the original follow one another from `s` on as those of path `p` do from

@@ -8,15 +8,9 @@
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
-namespace {
-
-// Primes that return all but what rounding takes or adds.
-constexpr Micro kRounding = 1'000;
-
-}  // namespace
 
 void PrimeBalance::Add(Micro surplus_of_link, uint32_t line, int64_t of_layer) {
-  if (std::abs(surplus_of_link) > kRounding) return;
+  if (std::abs(surplus_of_link) > kPrimeRounding) return;
   ++links;
   surplus += surplus_of_link;
   if (most.line == 0 || surplus_of_link > most.surplus) most = {surplus_of_link, line, of_layer};
@@ -54,7 +48,7 @@ void ComparePrimes(const Observations& was, const Observations& is, std::vector<
   const Micro off = is.primes.surplus - was.primes.surplus;
   const Micro most_of_link =
       std::max(std::abs(was.primes.most.surplus), std::abs(was.primes.least.surplus));
-  const Micro slack = kRounding + most_of_link * std::abs(is.primes.links - was.primes.links) +
+  const Micro slack = kPrimeRounding + most_of_link * std::abs(is.primes.links - was.primes.links) +
                       kOfEach * is.primes.links;
   if (std::abs(off) <= slack) return;
   const PrimeBalance::Odd& odd = off > 0 ? is.primes.most : is.primes.least;

@@ -9,8 +9,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kPerMicro = 1e-6;
-
 double Across(const std::array<Micro, 3>& a, double x, double y) {
   return std::hypot(static_cast<double>(a[0]) - x, static_cast<double>(a[1]) - y);
 }
@@ -54,8 +52,8 @@ double PathLengthOf(const Motion& motion) {
 double DwellSeconds(std::string_view line) {
   const CommandWords words(WordsOf(line));
   if (!words.readable) return 0;
-  const double seconds = static_cast<double>(words.ValueOr('S', 0)) * kPerMicro;
-  const double milliseconds = static_cast<double>(words.ValueOr('P', 0)) * kPerMicro;
+  const double seconds = static_cast<double>(words.ValueOr('S', 0)) * kMicro;
+  const double milliseconds = static_cast<double>(words.ValueOr('P', 0)) * kMicro;
   return std::max(words.Has('S') ? seconds : milliseconds / 1000, 0.0);
 }
 

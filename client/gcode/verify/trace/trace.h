@@ -57,6 +57,10 @@ struct TracePath {
   uint32_t size() const { return end_segment - first_segment; }
 };
 
+// What was pulled back may be returned with what rounding makes of it, piece by piece; some slicers
+// prime with next to nothing.
+inline constexpr Micro kPrimeRounding = 1'000;
+
 // Heights no farther apart are one, but for arithmetic.
 inline constexpr double kOneHeightMm = 1e-4;
 

@@ -10,16 +10,13 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kInch = 25.4;
-
 // Moves this short whose extrusion is written as 0 are segments that rounding left nothing of.
 constexpr double kRoundedMm = 0.05;
 
 constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
 
 // Of inches.
-Micro InMm(Micro length) { return std::llround(static_cast<double>(length) * kInch); }
+Micro InMm(Micro length) { return std::llround(static_cast<double>(length) * kInchMm); }
 
 // In mm; of an arc. With a positive radius it takes the short way round: the center then lies on
 // the right of the chord where it turns clockwise.
@@ -283,7 +280,7 @@ void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
 
 void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   const Motion& motion = machine.motion();
-  const double unit = machine.inches() ? kInch * kMicro : kMicro;
+  const double unit = machine.inches() ? kInchMm * kMicro : kMicro;
   const bool goes_on = in_path_ && !section_due_ && OnlyRounding();
   if (goes_on) {
     for (TraceCommand command : pending_commands_) {
@@ -343,7 +340,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
 
 void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   const Motion& motion = machine.motion();
-  const double unit = machine.inches() ? kInch * kMicro : kMicro;
+  const double unit = machine.inches() ? kInchMm * kMicro : kMicro;
   TraceMove move;
   move.kind = KindOf(motion);
   if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
@@ -377,12 +374,9 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.rounding = move.kind == MoveKind::kTravel && (motion.words & Bit('E')) != 0 &&
                   motion.filament == 0 && move.length_mm() <= kRoundedMm && !chunk_.paths.empty() &&
                   motion.feed == chunk_.paths.back().feed;
-  // What was pulled back may be returned with what rounding makes of it, piece by piece; some
-  // slicers prime with next to nothing.
-  constexpr Micro kRounding = 1'000;
   const Micro surplus = machine.inches() ? InMm(line.surplus) : line.surplus;
   const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
-  if (line.primes && std::abs(surplus) > kRounding) {
+  if (line.primes && std::abs(surplus) > kPrimeRounding) {
     chunk_.standstills.push_back({section, move.line, move.tool, surplus, fresh, move.to});
   }
   pending_.push_back(move);

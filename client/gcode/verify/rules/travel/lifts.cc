@@ -18,7 +18,6 @@ constexpr float kLiftedMm = 0.015f;  // travel that rises this high is lifted
 constexpr float kLowShare = 0.1f;
 // A slope of two stretches becomes a straight one, which rises later.
 constexpr float kLowFactor = 1.25f;
-constexpr int64_t kSlopeSlackUm = 2;
 constexpr double kTellingMm = 2;  // slopes of shorter moves tell little
 
 struct Height {
@@ -267,7 +266,7 @@ bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
   const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLeastTravelMm);
   // Heights are rounded to micrometres.
   const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
-  return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
+  return slope > 0 && Knows(was.slopes, slope, kSlackUm + rounded);
 }
 
 // The same, and it is not low behind that slope: on the slope itself it is no lower than such
@@ -339,8 +338,7 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
   for (const StatedHeight& stated : is.stated) {
     bool known = was.heights.Have(stated.um, stated.level);
     // On a slope that ends with its travel, shorter travel reaches less height.
-    known |=
-        stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
+    known |= stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlackUm);
     if (stated.slope > 0 && was.slopes.empty()) {
       breaks.push_back({VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,
                         "travel rises on its way, as none does in the original"});
