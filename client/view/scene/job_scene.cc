@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/api/job_result.h"
@@ -116,6 +119,14 @@ Scene EmptyScene(const InputJob& job) {
   return scene;
 }
 
+// The lines that a terminal shows one below the other, as sentences.
+std::string Sentences(std::vector<std::string> lines) {
+  for (std::string& line : lines) {
+    line[0] = absl::ascii_toupper(static_cast<unsigned char>(line[0]));
+  }
+  return absl::StrCat(absl::StrJoin(lines, ". "), ".");
+}
+
 }  // namespace
 
 Scene JobScene(const InputJob& job, const report::JobRun& given,
@@ -148,9 +159,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   const std::string rest = DescribeRest(rewrite);
   if (!rest.empty()) absl::StrAppend(&scene.moves_note, " Cooling: ", rest, ".");
   const std::vector<std::string> left = DescribeLeft(rewrite);
-  if (!left.empty()) {
-    absl::StrAppend(&scene.moves_note, " What stays: ", absl::StrJoin(left, ". "), ".");
-  }
+  if (!left.empty()) absl::StrAppend(&scene.moves_note, " What stays: ", Sentences(left));
   std::shared_ptr<const GcodeFile> printed = job.gcode;
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);

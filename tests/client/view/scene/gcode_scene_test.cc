@@ -1,5 +1,6 @@
 // What is drawn of G-code is what the files do.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 
 namespace traverse::view {
 namespace {
+
+using ::testing::HasSubstr;
 
 double LengthOf(const std::vector<DrawnMove>& moves) {
   double sum = 0;
@@ -113,6 +116,21 @@ TEST(DrawnGcode, ArcsAreRound) {
   // Routes begin it at the same corners as before it was bent.
   EXPECT_EQ(EntryOf(loop, layer.routes[0].visits[1]), (DrawnPoint{10, 10}));
   EXPECT_EQ(EntryOf(loop, layer.routes[1].visits[1]), (DrawnPoint{20, 14}));
+}
+
+// What a terminal shows line by line are sentences below a drawing.
+TEST(DrawnGcode, WhatStaysIsToldInSentences) {
+  const std::string text =
+      "M83\n;LAYER_CHANGE\nG1 Z.2 F600\n;TYPE:Perimeter\nG1 X30 Y14\nG1 X31 Y14 E.1\n";
+  const absl::StatusOr<InputJob> job = ReadGcodeJob(text, "part.gcode", {});
+  ASSERT_TRUE(job.ok()) << job.status();
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, {}, Rewriting({}));
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  ASSERT_EQ(rewrite->barriers.size(), 2u);
+
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "greedy", {}, *rewrite);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_THAT(scene->moves_note, HasSubstr("change places there. Of the rest, "));
 }
 
 // Three boxes one above the other: the travel between lines of the second one is seen by nobody.
