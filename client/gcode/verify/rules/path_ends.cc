@@ -2,6 +2,7 @@
 // stays with that end; if the seam moves or the path is reversed, there is one of the same length
 // at the new end.
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_format.h"
@@ -23,13 +24,15 @@ struct Tail {
   bool known = true;
 };
 
+// Up to `most_mm` of it.
 Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
-            absl::Span<const Piece> pieces) {
+            absl::Span<const Piece> pieces, double most_mm = HUGE_VAL) {
   Tail tail;
   const uint32_t first = chunk.links[path + 1].first_move;
   const uint32_t n = LayerPair::TailMoves(chunk, path, pieces);
   for (uint32_t m = first; m < first + n; ++m) {
     const TraceMove& move = chunk.moves[m];
+    if (tail.length_mm + move.length_mm() > most_mm) break;
     tail.length_mm += move.length_mm();
     tail.end = move.to;
     tail.feed = move.feed;
@@ -50,12 +53,16 @@ bool GoesBeyond(const TraceChunk& chunk, uint32_t path, const Tail& tail) {
          0;
 }
 
-// True if everything after the path leads to the next one: there is such travel between lines of a
-// zigzag where slicers round the deposit to nothing.
-bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+// True if the open head leads to the next path no faster than this one was printed: then nobody can
+// tell where travel begins. There is such travel between lines of a zigzag where slicers round the
+// deposit to nothing, and where travel is as fast as printing.
+bool LeadsOn(const TraceChunk& chunk, uint32_t path) {
   if (path + 1 >= chunk.paths.size()) return false;
   const TraceLink& link = chunk.links[path + 1];
-  return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
+  const auto begin = chunk.moves.begin();
+  return std::all_of(begin + link.first_move, begin + link.end_move, [&](const TraceMove& move) {
+    return move.kind == MoveKind::kTravel && move.open && move.feed <= chunk.paths[path].feed;
+  });
 }
 
 // The move with which the open nozzle, having left the end of path `path`, is back there, although
@@ -112,8 +119,12 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     if (visit.segments != path.size()) continue;
     CheckPoke(layer, visit, findings);
     const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
+    if (LeadsOn(was, visit.path)) continue;
     const Tail had = TailOf(layer, was, visit.path, pieces);
-    const Tail has = TailOf(layer, is, visit.last_path, pieces);
+    const double slack = std::max(kLengthSlackMm, 0.02 * had.length_mm);
+    const bool leads_on = LeadsOn(is, visit.last_path);
+    const Tail has =
+        TailOf(layer, is, visit.last_path, pieces, leads_on ? had.length_mm + slack : HUGE_VAL);
     const uint32_t end_line = is.segments[visit.last_segment].line;
     const auto report = [&](uint32_t original, uint32_t optimised, std::string what) {
       findings.breaks.push_back(
@@ -126,20 +137,13 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
                              ? DistanceOf(was.EndOf(path), path.start) + kLeastDepartureMm
                              : LoopGapMm(was, visit.path);
       const bool longer = has.length_mm > (same_end ? kLeastDepartureMm : gap);
-      const bool new_tail =
-          longer && !has.known && has.feed == path.feed && !LeadsOn(is, visit.last_path, pieces);
-      if (new_tail) {
+      if (longer && !has.known && has.feed == path.feed && !leads_on) {
         report(was.segments[path.end_segment - 1].line, has.line,
                absl::StrFormat("continues along the path for %.2f mm, but not in the original",
                                has.length_mm));
       }
       continue;
     }
-    if (has.length_mm < kLeastDepartureMm && !layer.Closed(visit.path) &&
-        LeadsOn(was, visit.path, pieces)) {
-      continue;
-    }
-    const double slack = std::max(kLengthSlackMm, 0.02 * had.length_mm);
     if (std::abs(has.length_mm - had.length_mm) > slack) {
       report(
           had.line, has.line != 0 ? has.line : end_line,
@@ -150,7 +154,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
              absl::StrFormat("continues along the path at F%g, but at F%g in the original",
                              static_cast<double>(has.feed) * 1e-6,
                              static_cast<double>(had.feed) * 1e-6));
-    } else if (!layer.Closed(visit.path) && !LeadsOn(was, visit.path, pieces) &&
+    } else if (!layer.Closed(visit.path) &&
                GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
       report(had.line, has.line, "continues from the path to the other side, unlike the original");
     } else if (same_end && DistanceOf(has.end, had.end) > kSamePointMm) {

@@ -103,6 +103,28 @@ TEST(VerifyPathEnds, AShortSlowMoveToOneSideIsTravel) {
   EXPECT_EQ(Broken(a, type + gap + first + line("X29.5 Y.4", "X29.5 Y9") + apart), "");
 }
 
+// Where travel is as fast as printing, what lies along a path may be the travel to the next one.
+TEST(VerifyPathEnds, AreNoneWhereTravelIsAsFastAsThePath) {
+  const auto line = [](const std::string& from, const std::string& to) {
+    return "G1 " + from + "\nG1 " + to + " E.3\n";
+  };
+  const std::string type = kHead + ";TYPE:Internal infill\nG1 F9000\n";
+  // From the first to the second line it leads along the first one, and from the third to the
+  // first.
+  const std::string first = line("X0 Y0", "X9 Y0");
+  const std::string second = line("X9.5 Y0\nG1 X12 Y1", "X12 Y9");
+  const std::string third = line("X3 Y0", "X3 Y-9");
+  const std::string a = type + first + second + third;
+  const std::string b = type + third + first + With(second, "X9.5 Y0\nG1 ", "");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_THAT(Broken(a, b), Not(HasSubstr("path_ends")));
+  const std::string c = type + With(second, "X9.5 Y0\nG1 ", "") + third + first;
+  EXPECT_THAT(Broken(a, c), Not(HasSubstr("path_ends")));
+  // Where it is faster, none may be missing.
+  const std::string fast = With(a, "G1 X12 Y1\n", "G1 X12 Y1 F12000\n");
+  EXPECT_THAT(Broken(fast, With(fast, "G1 X9.5 Y0\n", "")), HasSubstr("path_ends"));
+}
+
 // At its own feed rate, which no way has; the travel to the next layer begins with it.
 TEST(VerifyPathEnds, AreNoTravelsAtTheEndOfALayer) {
   const std::string one = With(Tailed("X0 Y0", "X9 Y0", "X9.2 Y0"), "F1800", "F1556");
