@@ -30,6 +30,7 @@ constexpr FeatureWord kFeatures[] = {
 constexpr SettingWord kSettings[] = {
     {"machine_head_with_fans_polygon", Setting::kHeadPolygon},
     {"machine_nozzle_head_distance", Setting::kNozzleHeight},
+    {"material_diameter", Setting::kFilamentDiameter},
 };
 
 constexpr TimeWord kTimes[] = {{"TIME:"}, {"TIME_ELAPSED:"}, {"Print Time:"}, {"Print time:"}};

@@ -262,7 +262,7 @@ void Verifier::CheckChunk() {
     }
     lines[i].Add(layer);
     CheckLayer(layer, found[i]);
-    if (rest_) islands[i] = FindPrintedIslands(layer, heights[i]);
+    if (rest_) islands[i] = FindPrintedIslands(layer, heights[i], context_.settings.filament_mm);
     if (more_ || i + 1 < layers || layer.Ended()) return;
     ObserveLastParts(layer, found[i]);
     ObserveLastSpeeds(layer, found[i]);

@@ -112,6 +112,7 @@ SlicerSettings ReadSettings(std::string_view text) {
     if (mm > 0 && mm <= kMostClearanceMm) stated_mm = mm;
   };
   const StatedSettings stated = ReadStatedSettings(text);
+  room(stated.filament_mm.value_or(0), settings.filament_mm);
   room(stated.head_reach_mm.value_or(0), settings.clearance_radius_mm);
   room(stated.head_above_tip_mm.value_or(0), settings.nozzle_height_mm);
   room(GreatestOf(first_of("extruder_clearance_radius", "extruder_clearance_max_radius")),

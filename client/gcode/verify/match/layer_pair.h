@@ -24,6 +24,7 @@ struct SlicerSettings {
   bool leads_around_walls = false;  // leads travel around walls
   double clearance_radius_mm = 30;  // around the nozzle, within which other parts hang
   double nozzle_height_mm = 2;      // no other part hangs lower above the tip than this
+  double filament_mm = 1.75;        // its diameter
   double least_layer_seconds = 10;  // the greatest of all tools; 10: not stated
 };
 

@@ -18,6 +18,8 @@ constexpr std::array<std::string_view, 8> kNames = {
     "slowdownbelowlayertime", "slowdownlayertime", "coolminlayertime", "minlayertimes",
     "minlayertimesec",        "minspeedlayertime", "minlayertime",     "minimumlayertime"};
 
+constexpr std::array<std::string_view, 2> kFilamentNames = {"filamentdiameter", "materialdiameter"};
+
 constexpr size_t kLongestName = 64;
 
 // Where CuraEngine keeps its settings: lines of 80 characters, in which a new line is "\\n".
@@ -66,6 +68,9 @@ class SettingNotes {
     const std::string_view value = setting.substr(end + 1);
     if (std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
       TakeGreatest(value, found_.least_layer_seconds);
+    } else if (std::find(kFilamentNames.begin(), kFilamentNames.end(), name) !=
+               kFilamentNames.end()) {
+      TakeGreatest(value, found_.filament_mm);
     } else if (name == kHeadDistance) {
       TakeGreatest(value, found_.head_above_tip_mm);
     } else if (name == kHeadPolygon) {

@@ -11,6 +11,7 @@ namespace traverse::gcode {
 // Each is unset if no comment states it.
 struct StatedSettings {
   std::optional<double> least_layer_seconds;  // the greatest one if there are several
+  std::optional<double> filament_mm;          // its diameter; the same of several
   std::optional<double> head_reach_mm;        // of CuraEngine's head polygon around the nozzle
   std::optional<double> head_above_tip_mm;    // how much higher than the tip the head begins
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -26,18 +27,18 @@ constexpr double kMostReachMm = 4;
 constexpr uint64_t kLooks = 100'000;  // at pairs of pieces, and for each piece
 constexpr uint64_t kLooksEach = 1'000;
 constexpr double kReachWidths = 1.25;
-constexpr double kFilamentMm2 = 2.405;  // of 1.75 mm
 
 class IslandFinder {
  public:
-  IslandFinder(const LayerPair& layer, double height_mm)
+  // Filament of `filament_mm`, in diameter.
+  IslandFinder(const LayerPair& layer, double height_mm, double filament_mm)
       : layer_(layer),
         first_(layer.first_path_was()),
         apart_(layer.end_path_was() - first_),
         regions_(static_cast<int>(apart_)),
         tree_(layer.pieces()) {
     for (uint32_t path = first_; path < layer.end_path_was(); ++path) {
-      reach_.push_back(ReachOf(layer.was().paths[path], height_mm));
+      reach_.push_back(ReachOf(layer.was().paths[path], height_mm, filament_mm));
     }
   }
 
@@ -51,9 +52,10 @@ class IslandFinder {
   }
 
  private:
-  static double ReachOf(const TracePath& path, double height_mm) {
+  static double ReachOf(const TracePath& path, double height_mm, double filament_mm) {
     if (!(path.length_mm > 0) || !(height_mm > 0)) return kLeastReachMm;
-    const double area = path.filament_mm / path.length_mm * kFilamentMm2;
+    const double area =
+        path.filament_mm / path.length_mm * filament_mm * filament_mm * std::numbers::pi / 4;
     return std::clamp(kReachWidths * area / height_mm, kLeastReachMm, kMostReachMm);
   }
 
@@ -212,8 +214,8 @@ class IslandFinder {
 
 }  // namespace
 
-PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm) {
-  return IslandFinder(layer, height_mm).Find();
+PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm, double filament_mm) {
+  return IslandFinder(layer, height_mm, filament_mm).Find();
 }
 
 bool RestWatch::RestsTooShort(const PrintedIsland& below, uint64_t first_path,

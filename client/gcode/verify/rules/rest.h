@@ -36,9 +36,8 @@ struct PrintedIslands {
 };
 
 // Paths within 0.52 mm, or about 1.25 line widths as their filament implies them, touch and are of
-// one island.
-// `height_mm` is that of the layer.
-PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm);
+// one island. `height_mm` is that of the layer, `filament_mm` the filament's diameter.
+PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm, double filament_mm);
 
 // Follows a print layer by layer.
 class RestWatch {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_replace.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -102,6 +103,21 @@ TEST(VerifyRest, CirclesThatDoNotTouchAreIslandsOfTheirOwn) {
   EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + a + c + b), "");
   EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + b + c + a),
             "rest");
+}
+
+// As wide as its filament makes it, a line 0.9 mm beside another one is of its island, and rests
+// with that.
+TEST(VerifyRest, LinesOfThickFilamentAreWider) {
+  const std::vector<double> first = {0, 20, 0.9, 40, 60};
+  const auto print = [&first](const std::vector<double>& second) {
+    return absl::StrReplaceAll(Print({first, second}), {{"E.3\n", "E2\n"}});
+  };
+  const std::string thick = "; filament_diameter = 2.85\n";
+  const std::string given = print(first);
+  const std::string other = print({0.9, 20, 0, 40, 60});
+
+  EXPECT_EQ(Rests(given, other), "rest");
+  EXPECT_EQ(Rests(given + thick, other + thick), "");
 }
 
 TEST(VerifyRest, IslandsThatCountAsOneRestTogether) {
