@@ -101,6 +101,7 @@ struct Layer {
   Decimal z = 0;
   Offset fault_at = 0;          // if `fault`, its line
   const char* fault = nullptr;  // of a line in it or on the travel to or from it: it stays as it is
+  double height_mm = 0.2;  // above the one below it, or above the plate; 0.2: that tells nothing
 };
 
 // How many lines of a kind there are, and the first of them.

@@ -52,23 +52,10 @@ double UsualFlow(const GcodeFile& file, const Layer& layer, const std::vector<Ou
   return 0;
 }
 
-// The first layer of an object is as high as it lies.
-double HeightMm(const GcodeFile& file, const Layer& layer) {
-  const auto begin = file.layers.begin();
-  auto below = std::lower_bound(
-      begin, file.layers.end(), layer.first_block,
-      [](const Layer& other, uint32_t block) { return other.first_block < block; });
-  while (below != begin && (below - 1)->z == layer.z) --below;
-  const bool has_below = below != begin && (below - 1)->z < layer.z;
-  const Decimal height = has_below ? layer.z - (below - 1)->z : layer.z;
-  return ToDouble(height) * file.modes[file.blocks[layer.first_block].mode].UnitMm();
-}
-
 // The distance of lines of the usual flow that fill the layer.
 double UsualSpacingMm(const GcodeFile& file, const Layer& layer, double usual_flow) {
   const double diameter = file.profile.filament_diameter;
-  const double stated = HeightMm(file, layer);
-  const double height = stated > 0.02 ? stated : 0.2;
+  const double height = layer.height_mm;
   return usual_flow * diameter * diameter * std::numbers::pi / 4 / height;
 }
 

@@ -1,6 +1,8 @@
 #include "client/gcode/model/outline.h"
 
 #include <algorithm>
+#include <cassert>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -11,8 +13,6 @@
 
 namespace traverse::gcode {
 namespace {
-
-constexpr double kDefaultHeightMm = 0.2;
 
 // The gap of a loop, at most, where lines are not wide.
 constexpr double kUsualGapMm = 0.13;
@@ -39,7 +39,9 @@ double WidthOfFlow(const GcodeFile& file, const Block& block) {
   if (!(filament > 0) || !(block.length_mm > 0)) return 0;
   const double area =
       filament * diameter * diameter * std::numbers::pi / 4 / static_cast<double>(block.length_mm);
-  const double height = SlotNumber(file, block, kSlotHeight).value_or(kDefaultHeightMm);
+  const double height =
+      SlotNumber(file, block, kSlotHeight)
+          .value_or(LayerHeightMm(file, static_cast<uint32_t>(&block - file.blocks.data())));
   return area / height + height * (1 - std::numbers::pi / 4);
 }
 
@@ -79,6 +81,14 @@ double LengthOf(const std::vector<Point>& points) {
 }
 
 }  // namespace
+
+double LayerHeightMm(const GcodeFile& file, uint32_t block) {
+  const auto behind = std::upper_bound(
+      file.layers.begin(), file.layers.end(), block,
+      [](uint32_t number, const Layer& layer) { return number < layer.first_block; });
+  assert(behind != file.layers.begin());
+  return std::prev(behind)->height_mm;
+}
 
 double LoopGapMm(const GcodeFile& file, double width_mm) {
   constexpr double kShare = 0.15;

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_OUTLINE_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_OUTLINE_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "client/gcode/model/block_feature.h"
@@ -41,6 +42,9 @@ struct Outline {
 // How far short of its start a loop with lines of this width may end: slicers clip up to 0.15
 // widths of the nozzle or of the line, and CuraEngine's coasting leaves 0.09 mm.
 double LoopGapMm(const GcodeFile& file, double width_mm);
+
+// Of the layer that block number `block` is in. O(log n) in the layers.
+double LayerHeightMm(const GcodeFile& file, uint32_t block);
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 

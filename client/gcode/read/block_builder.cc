@@ -451,11 +451,30 @@ void BlockBuilder::KeepLayersWithFaults() {
   }
 }
 
+// The first layer of an object is as high as it lies.
+void BlockBuilder::NoteHeights() {
+  constexpr double kLeastMm = 0.02;
+  const Layer* before = nullptr;
+  for (Layer& layer : file_.layers) {
+    const bool again = before != nullptr && before->z == layer.z;
+    const Decimal below = before != nullptr && before->z < layer.z ? before->z : 0;
+    const double mm =
+        ToDouble(layer.z - below) * file_.modes[file_.blocks[layer.first_block].mode].UnitMm();
+    if (again) {
+      layer.height_mm = before->height_mm;
+    } else if (mm > kLeastMm) {
+      layer.height_mm = mm;
+    }
+    before = &layer;
+  }
+}
+
 void BlockBuilder::Finish() {
   if (file_.blocks.empty()) return;
   EndBlock();
   file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
   KeepLayersWithFaults();
+  NoteHeights();
   // A first mark that most of the print stands before is none.
   if (scripted_ * 2 > file_.blocks.size()) {
     file_.script_end = 0;

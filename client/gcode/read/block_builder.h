@@ -83,6 +83,7 @@ class BlockBuilder {
   void CloseLink(const Block& block, Decimal first_end_z, bool retracted);
   void BeginLayer(const Block& block);
   void KeepLayersWithFaults();
+  void NoteHeights();
   uint32_t CurrentState();
   uint16_t ModeOf(const MachineState& state);
   Block& Last() { return file_.blocks.back(); }

@@ -127,7 +127,7 @@ TEST_F(OptimizeFileTest, WhatFollowsTheSearchTakesLongerOnABusyMachine) {
 }
 
 TEST_F(OptimizeFileTest, FewerCrossingsAreWorthMoreThanKeepingThem) {
-  const std::string text = Beginning("sl_nameplate_2tool", "G1 Z1.000 ");
+  const std::string text = Beginning("sl_nameplate_2tool", "G1 Z1.750 ");
   const gcode::PrintTotals keep = After(text, gcode::Policy::kSafe, gcode::Crossings::kKeep);
   const gcode::PrintTotals fewer = After(text, gcode::Policy::kSafe, gcode::Crossings::kFewer);
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/block_feature.h"
@@ -18,6 +19,8 @@
 namespace traverse::gcode {
 namespace {
 
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::Read;
 using ::testing::StartsWith;
@@ -54,6 +57,25 @@ TEST(ReadGcode, LoopsMayEndShortOfTheirStart) {
   EXPECT_DOUBLE_EQ(loop.width_mm, 0.45);
   EXPECT_FALSE(line.closed);
   EXPECT_EQ(line.feature, Feature::kSparseInfill);
+}
+
+// Where a file says neither, lines are as wide as their filament fills in a layer of its height.
+TEST(ReadGcode, WidthsAreThoseOfTheHeightOfTheLayer) {
+  const auto file = Read(
+      "M83\n;LAYER:0\nG1 Z.5 F600\nG1 X0 Y0\nG1 X10 E1\nG1 X0 Y5\nG1 X10 E1\n"
+      ";LAYER:1\nG1 Z.9\nG1 X0 Y0\nG1 X10 E1\n;LAYER:2\nG1 Z.9\nG1 X0 Y9\nG1 X10 E1\n"
+      ";LAYER:0\nG1 Z.3\nG1 X40 Y0\nG1 X50 E1\n");
+  std::vector<double> heights;
+  std::vector<double> widths;
+  for (const Layer& layer : file->layers) heights.push_back(layer.height_mm);
+  for (const Block& block : file->blocks) widths.push_back(OutlineOf(*file, block).width_mm);
+
+  EXPECT_THAT(heights, ElementsAre(DoubleNear(0.5, 1e-9), DoubleNear(0.4, 1e-9),
+                                   DoubleNear(0.4, 1e-9), DoubleNear(0.3, 1e-9)));
+  // 0.2405 mm2, less the round sides.
+  EXPECT_THAT(widths,
+              ElementsAre(DoubleNear(0.588, 1e-3), DoubleNear(0.588, 1e-3), DoubleNear(0.687, 1e-3),
+                          DoubleNear(0.687, 1e-3), DoubleNear(0.866, 1e-3)));
 }
 
 TEST(ReadGcode, StateIsThatOfTheFirstSegment) {
