@@ -16,6 +16,7 @@
 #include "client/gcode/verify/machine/command_words.h"
 #include "client/gcode/verify/machine/print_settings.h"
 #include "client/gcode/verify/machine/text_lines.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 
@@ -145,7 +146,7 @@ class VerifyMachine {
   bool relative_e_ = false;
   bool inches_ = false;
   bool plane_xy_ = true;
-  uint64_t tool_ = 0;
+  uint64_t tool_ = DigestOf("T0");
   bool prints_ = false;  // has deposited something
   // Digests of what the nozzle and the bed were told last; 0 where it may have been something else.
   uint64_t nozzle_ = 0;

@@ -54,6 +54,21 @@ TEST(VerifyStandstill, WhatIsPushedMoreThanPulledStaysInItsLayer) {
   }
 }
 
+// Printers begin with tool 0: what a start script pulled back before it says so comes back.
+TEST(VerifyStandstill, TheFirstToolIsInForceFromTheBegin) {
+  const auto print = [](const std::string& tool, const std::string& first,
+                        const std::string& second) {
+    const std::string start = "M83\nG92 E0\nG1 X0 Y50 F9000\nG1 X20 E9 F600\nG1 E-1 F2100\n";
+    return start + ";LAYER_CHANGE\nG1 Z.2 F9000\n" + tool + With(first, "G1 E-1 F2100\n", "") +
+           second;
+  };
+  const std::string other = Line("Internal infill", "X0 Y5", "X9 Y5");
+  const std::string one = Line("Internal infill", "X0 Y0", "X9 Y0");
+  constexpr uint32_t kRule = RuleBit(VerifyRule::kStandstill);
+  EXPECT_EQ(Broken(print("T0\n", one, other), print("T0\n", other, one), {}, kRule), "");
+  EXPECT_EQ(Broken(print("T1\n", one, other), print("T1\n", other, one), {}, kRule), "standstill");
+}
+
 TEST(VerifyStandstill, WhatIsPushedLessThanPulledIsPushedAsOften) {
   const std::string less = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E.98 F2100\n";
   const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
