@@ -116,8 +116,8 @@ const LinkStep* GoingOnAlong(const Block& block, const Link& link) {
 }
 
 bool MayDepart(const GcodeFile& file, size_t index) {
-  if ((file.blocks[index - 1].flags & kBlockGoesOn) != 0) return true;
-  return !file.slicer.combs && (file.blocks[index].link & kLinkDeparts) != 0;
+  return (file.blocks[index - 1].flags & kBlockGoesOn) != 0 ||
+         (file.blocks[index].link & kLinkDeparts) != 0;
 }
 
 const LinkStep* DepartureOf(const Link& link) {

@@ -189,7 +189,7 @@ double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& m
   TravelPlanner planner(file, block - 1, model);
   Interpreter interpreter(file.LinkText(block), 0,
                           StartBehind(file, file.blocks[block - 1]).machine);
-  bool departs = !file.slicer.combs && (file.blocks[block].link & kLinkDeparts) != 0;
+  bool departs = (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();

@@ -159,6 +159,7 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
   if (step.filament < 0) link_.flags |= kLinkRetracts;
   const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
   if (pulls && !step.retracted && link_.retracted) link_.flags |= kLinkRetractsAgain;
+  if (pulls && link_.open_first_move && link_.xy_moves == 1) link_.pulls_behind_first = true;
   link_.retracted = link_.retracted || step.retracted;
   if (step.relative) link_.relative_rise += after.at.z - before.at.z;
   if (IsXyMotion(step.kind)) {
@@ -360,8 +361,10 @@ void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z, bool retra
     // height of its layer.
     if (link_.relative_rise != 0 && new_layer) link_.flags |= kLinkFixed;
   }
-  const bool departs =
-      link_.xy_moves > 1 && link_.first_move_mm > 0 && link_.first_move_mm <= kMaxDepartureMm;
+  // Where travel is led around walls, it may begin with a short move to anywhere.
+  const bool departs = link_.xy_moves > 1 && link_.first_move_mm > 0 &&
+                       link_.first_move_mm <= kMaxDepartureMm &&
+                       (!file_.slicer.combs || link_.pulls_behind_first);
   if (departs) link_.flags |= kLinkDeparts;
   if (new_layer) {
     link_.flags |= kLinkNewLayer | kLinkSplits;

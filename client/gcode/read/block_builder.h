@@ -44,7 +44,8 @@ class BlockBuilder {
     double first_move_mm = 0;
     Position first_move_to;  // of a travel move without a retraction
     bool open_first_move = false;
-    bool retracted = false;  // before one of its lines
+    bool pulls_behind_first = false;  // such a move, and then pulls back
+    bool retracted = false;           // before one of its lines
     bool sets_fan = false;
     bool lost = false;               // a move that is not understood: its end is unknown
     uint32_t found = 0;              // axes that a move behind it states

@@ -171,6 +171,19 @@ TEST(BlockBuilder, AMoveThatRoundsToNothingEndsNoPath) {
   EXPECT_EQ(Read(head + "G1 X5 Y0 E.1\n" + tail)->blocks.size(), 3u);
 }
 
+// CuraEngine leads travel around walls from its begin on; where it retracts, it may move in before.
+TEST(BlockBuilder, DepartsWhereItPullsBackBehindAShortMove) {
+  const std::string head =
+      ";FLAVOR:Marlin\n;Generated with Cura_SteamEngine 5.0.0\nM83\n;LAYER:0\nG0 F9000 X1 Y0\n";
+  const std::string next = "G0 F9000 X0 Y9\nG1 F2400 E1\nG1 F1200 X5 E1\n";
+  const auto departs = [&](const std::string& leaving) {
+    return Read(head + "G1 F1200 X5 E1\n" + leaving + next)->blocks[1].link & kLinkDeparts;
+  };
+  EXPECT_TRUE(departs("G0 F9000 X5 Y.4\nG1 F2400 E-1\n"));
+  EXPECT_FALSE(departs("G0 F9000 X5 Y.4\nG0 X4 Y3\nG1 F2400 E-1\n"));
+  EXPECT_FALSE(departs("G1 F2400 E-1\nG0 F9000 X5 Y.4\n"));
+}
+
 TEST(BlockBuilder, ATailThatLeadsToTheNextPathIsTravel) {
   const auto file = Read("M83\nG1 F1200 X5 E1\nG1 X5.5 Y.5\nG1 X0 E1\n");
 
