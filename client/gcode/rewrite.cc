@@ -329,16 +329,26 @@ class Rewriter {
       } else if (other_print) {
         any |= chooser_.RuleOutStarts(layer) || RuleOutAround(layer);
       } else {
-        any |= RuleOut(found.rule, lines.Find(found.optimised_line)) || RuleOutAround(layer);
+        any |= RuleOutOrder(found, lines) ||
+               RuleOut(found.rule, lines.Find(found.optimised_line)) || RuleOutAround(layer);
       }
     }
     if (!any || round + 1 >= kMostRounds) RuleOutFrom(0);
   }
 
+  // That one path comes before another one of its layer.
+  bool RuleOutOrder(const VerifyBreak& found, const LayerLines& lines) {
+    if (found.before_line == 0) return false;
+    const LayerLines::Place at = lines.Find(found.optimised_line);
+    const LayerLines::Place before = lines.Find(found.before_line);
+    return !at.travel && !before.travel && at.layer == before.layer &&
+           chooser_.RuleOutOrder(at.layer, at.line, before.line);
+  }
+
   bool RuleOut(VerifyRule rule, const LayerLines::Place& at) {
     if (at.travel || rule == VerifyRule::kRest) return chooser_.RuleOutTravel(at.layer);
     const bool of_path = rule == VerifyRule::kWholePaths || rule == VerifyRule::kDirection ||
-                         rule == VerifyRule::kSeam;
+                         rule == VerifyRule::kSeam || rule == VerifyRule::kPathEnds;
     return (of_path && chooser_.RuleOutPath(at.layer, at.line)) ||
            chooser_.RuleOutLink(at.layer, at.line);
   }

@@ -28,6 +28,10 @@ constexpr double kCrossingSeconds[] = {0, 0.25};
 // Choices besides the file's own that are turned.
 constexpr size_t kTurned = 2;
 
+void Append(const std::vector<PathPair>& more, std::vector<PathPair>& pairs) {
+  pairs.insert(pairs.end(), more.begin(), more.end());
+}
+
 // Travel moves that all layers together remember between the steps of choosing.
 constexpr size_t kMostRemembered = 400'000;
 
@@ -82,6 +86,16 @@ class LayerChooser::Impl {
     column.totals.no_choice[column.chosen] = true;
     column.refusals.RefuseLink(Chosen(layer).order, PlaceOfLine(column, line));
     return true;
+  }
+
+  bool RuleOutOrder(size_t layer, size_t line, size_t before) {
+    LayerColumn& column = columns_[layer];
+    if (column.chosen == 0) return false;
+    const bool refused =
+        column.refusals.RefuseOrder(Chosen(layer).order, file_.layers[layer].first_block,
+                                    PlaceOfLine(column, line), PlaceOfLine(column, before));
+    if (refused) column.totals.no_choice[column.chosen] = true;
+    return refused;
   }
 
   bool RuleOutPath(size_t layer, size_t line) {
@@ -160,6 +174,8 @@ class LayerChooser::Impl {
   MergeRules RulesOf(size_t layer) const {
     MergeRules rules = RulesUnder(file_, file_.layers[layer], policy_, allow_, polish_);
     rules.crossings = crossings_;
+    rules.ordered = columns_[layer].refusals.ordered;
+    if (rules.freedom) Append(rules.ordered, rules.freedom->ordered);
     rules.as_many_retractions = columns_[layer].totals.inside[0].PushesExtra();
     if (polish_ && habit_.avoids_walls) {
       rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
@@ -170,7 +186,9 @@ class LayerChooser::Impl {
   // What the policy allows in layer `layer`, whose orders are merged by `rules`.
   LayerFreedom FreedomWithin(size_t layer, const MergeRules& rules) const {
     if (rules.freedom) return *rules.freedom;
-    return FreedomOf(file_, file_.layers[layer], policy_, allow_);
+    LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+    Append(rules.ordered, freedom.ordered);
+    return freedom;
   }
 
   // The search found an order for layer `layer` besides the file's own.
@@ -249,7 +267,9 @@ class LayerChooser::Impl {
     refusals.Forget();
     if (order) filler_.Add(*order, layer, column);
     for (size_t c = 1; c < column.choices.size(); ++c) {
-      if (refusals.Refuse(column.choices[c].order)) column.totals.no_choice[c] = true;
+      const bool refused =
+          refusals.Refuse(column.choices[c].order, file_.layers[layer].first_block);
+      if (refused) column.totals.no_choice[c] = true;
     }
   }
 
@@ -470,6 +490,10 @@ ChosenLayers LayerChooser::Choose() { return impl_->Choose(); }
 
 bool LayerChooser::RuleOutLink(size_t layer, size_t line) {
   return impl_->RuleOutLink(layer, line);
+}
+
+bool LayerChooser::RuleOutOrder(size_t layer, size_t line, size_t before) {
+  return impl_->RuleOutOrder(layer, line, before);
 }
 
 bool LayerChooser::RuleOutPath(size_t layer, size_t line) {

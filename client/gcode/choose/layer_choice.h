@@ -90,6 +90,9 @@ class LayerChooser {
   // which always stays possible.
   bool RuleOutLink(size_t layer, size_t line);
 
+  // The same for that the path in line `line` comes before the one in line `before`.
+  bool RuleOutOrder(size_t layer, size_t line, size_t before);
+
   // The same for how the path in that line is placed. False if it is as in the file.
   bool RuleOutPath(size_t layer, size_t line);
 

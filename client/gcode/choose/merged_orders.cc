@@ -197,6 +197,12 @@ class LayerMerge {
   std::optional<LayerOrder> Repair(LayerOrder order, const LayerFreedom& freedom, size_t reach) {
     StandAs(order);
     size_t repairs = 0;
+    const uint32_t first = given_.front().block;
+    LayerOrder ordered = InOrderOf(order, first, rules_.ordered);
+    if (ordered != order && KeepsTogether(ordered, freedom, first)) {
+      order = std::move(ordered);
+      ++repairs;
+    }
     for (size_t place = 1; place < order.size() && repairs < kMostRepairs; ++place) {
       if (!IsRefused(order[place - 1], order[place])) continue;
       std::optional<LayerOrder> best;

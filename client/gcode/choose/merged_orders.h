@@ -28,6 +28,10 @@ struct MergeRules {
   std::optional<LayerFreedom> freedom = {};
   std::optional<PolishLimit> polish = {};
 
+  // Pairs of paths that the verifier refused the other way round; beyond those of `freedom`, which
+  // has them too.
+  std::vector<PathPair> ordered = {};
+
   // Links that the verifier refused; the file's own count as allowed all the same. May be null.
   const LinkSet* refused = nullptr;
 };
@@ -44,9 +48,9 @@ MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
 std::vector<LayerOrder> MergedOrders(KnownTravels& travels, const LayerOrder& found,
                                      const MergeRules& rules);
 
-// `order` without the links that `rules` refuse, or as few of them as can be had by changes around
-// each; for a layer of freedom `freedom`. With greater `reach`, more paths around each are as
-// sliced at the most. Unset if all of them stay.
+// `order` with the pairs of `rules` as sliced and without the links that they refuse, or as few of
+// them as can be had by changes around each; for a layer of freedom `freedom`. With greater
+// `reach`, more paths around each are as sliced at the most. Unset if all of them stay.
 std::optional<LayerOrder> RepairedOrder(KnownTravels& travels, const LayerOrder& order,
                                         const MergeRules& rules, const LayerFreedom& freedom,
                                         size_t reach);

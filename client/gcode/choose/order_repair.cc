@@ -7,6 +7,9 @@
 namespace traverse::gcode {
 namespace {
 
+// So many pairs are put in order one by one, for each takes a look at the whole layer.
+constexpr size_t kMostMoved = 64;
+
 LayerOrder::iterator Find(LayerOrder& order, uint32_t block) {
   return std::find_if(order.begin(), order.end(),
                       [block](const Placement& placement) { return placement.block == block; });
@@ -34,6 +37,35 @@ LayerOrder Joined(LayerOrder order, const Placement& first, const Placement& sec
   return order;
 }
 
+// [path] its place in `order`.
+std::vector<size_t> PlacesIn(const LayerOrder& order, uint32_t first) {
+  std::vector<size_t> places(order.size());
+  for (size_t place = 0; place < order.size(); ++place) places[order[place].block - first] = place;
+  return places;
+}
+
+// `order` with the path at `later` behind the one at `earlier`, a place behind it, which comes
+// before it as sliced.
+LayerOrder Ordered(LayerOrder order, size_t later, size_t earlier) {
+  const auto begin = order.begin() + static_cast<std::ptrdiff_t>(later);
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(earlier);
+  const Placement moved = *begin;
+  const Placement last = *end;
+  LayerOrder behind;
+  auto to = begin;
+  for (auto path = begin + 1; path != end; ++path) {
+    if (path->block < moved.block) {
+      *to++ = *path;
+    } else {
+      behind.push_back(*path);
+    }
+  }
+  *to++ = last;
+  *to++ = moved;
+  std::copy(behind.begin(), behind.end(), to);
+  return order;
+}
+
 // `order` with its paths at [begin, end) as sliced.
 LayerOrder AsSliced(LayerOrder order, size_t begin, size_t end) {
   const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -50,6 +82,32 @@ bool HasAnyOf(const LayerOrder& order, const LinkSet& links) {
     if (links.contains({order[place - 1], order[place]})) return true;
   }
   return false;
+}
+
+bool BreaksAnyOf(const LayerOrder& order, uint32_t first, const std::vector<PathPair>& pairs) {
+  if (pairs.empty()) return false;
+  const std::vector<size_t> places = PlacesIn(order, first);
+  return std::any_of(pairs.begin(), pairs.end(), [&places](const PathPair& pair) {
+    return places[pair.first] > places[pair.second];
+  });
+}
+
+LayerOrder InOrderOf(LayerOrder order, uint32_t first, const std::vector<PathPair>& pairs) {
+  size_t moved = 0;
+  size_t begin = order.size();
+  size_t end = 0;
+  std::vector<size_t> places = PlacesIn(order, first);
+  for (const auto& [earlier, later] : pairs) {
+    if (places[earlier] <= places[later]) continue;
+    if (moved++ < kMostMoved) {
+      order = Ordered(std::move(order), places[later], places[earlier]);
+      places = PlacesIn(order, first);
+    } else {
+      begin = std::min(begin, places[later]);
+      end = std::max(end, places[earlier] + 1);
+    }
+  }
+  return begin < end ? AsSliced(std::move(order), begin, end) : order;
 }
 
 std::vector<LayerOrder> OrdersWithoutLink(const LayerOrder& order, size_t place,

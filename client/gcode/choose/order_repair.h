@@ -13,6 +13,7 @@
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_REPAIR_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,18 @@ using LinkSet = absl::flat_hash_set<LinkEnds>;
 
 // Whether one of the links of `order` is in `links`.
 bool HasAnyOf(const LayerOrder& order, const LinkSet& links);
+
+// Two paths, numbered from 0 in their layer, the first of which comes before the second as sliced.
+using PathPair = std::pair<uint32_t, uint32_t>;
+
+// Whether one of `pairs` is the other way round in `order`. O(n) in both. REQUIRES: the paths of
+// `order` are those of the layer that begins with block `first`.
+bool BreaksAnyOf(const LayerOrder& order, uint32_t first, const std::vector<PathPair>& pairs);
+
+// `order` with each of `pairs` the right way round: what lies between the two and comes before the
+// second as sliced goes before both, all others behind. Where many pairs are not, what lies between
+// the others of them is as sliced. O(n). REQUIRES: as above.
+LayerOrder InOrderOf(LayerOrder order, uint32_t first, const std::vector<PathPair>& pairs);
 
 // Orders like `order` without its link to place `place`; up to `reach` paths on either side of the
 // link are as sliced in the last of them. O(size of the order). REQUIRES: both have the same paths,

@@ -18,6 +18,15 @@ void Refusals::RefuseLink(const LayerOrder& order, size_t place) {
   }
 }
 
+bool Refusals::RefuseOrder(const LayerOrder& order, uint32_t first, size_t at, size_t before) {
+  if (at >= before || before >= order.size()) return false;
+  const PathPair pair{order[before].block - first, order[at].block - first};
+  if (pair.first >= pair.second) return false;
+  ordered.push_back(pair);
+  any = inside = true;
+  return true;
+}
+
 void Refusals::RefuseTravel(uint32_t before, uint32_t choice, const LinkEnds* link) {
   any = true;
   travels.emplace(before, choice);
@@ -44,8 +53,8 @@ bool Refusals::RefusePlaceOf(const Placement& placement) {
   return true;
 }
 
-bool Refusals::Refuse(const LayerOrder& order) const {
-  return HasAnyOf(order, links) ||
+bool Refusals::Refuse(const LayerOrder& order, uint32_t first) const {
+  return HasAnyOf(order, links) || BreaksAnyOf(order, first, ordered) ||
          std::any_of(order.begin(), order.end(),
                      [this](const Placement& placement) { return Refuse(placement); });
 }

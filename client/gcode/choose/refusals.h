@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "absl/container/flat_hash_set.h"
 #include "client/gcode/choose/order_repair.h"
@@ -16,6 +17,7 @@ struct Refusals {
   bool any = false;  // something is refused, or all choices but the first
 
   LinkSet links;                       // within the layer
+  std::vector<PathPair> ordered;       // that may not change places
   LinkSet links_to;                    // from the layer before
   bool loops_stay = false;             // loops begin as in the file
   bool lines_stay = false;             // and no line is turned round
@@ -35,6 +37,10 @@ struct Refusals {
   // Refuses the link to place `place` of `order` or, if that is the file's own, one beside it.
   void RefuseLink(const LayerOrder& order, size_t place);
 
+  // Refuses that the path at place `at` of `order` comes before the one at place `before`. False if
+  // it has to, as sliced.
+  bool RefuseOrder(const LayerOrder& order, uint32_t first, size_t at, size_t before);
+
   // Refuses travel from a choice of the layer before, and that link between any choices unless it
   // is null.
   void RefuseTravel(uint32_t before, uint32_t choice, const LinkEnds* link);
@@ -53,7 +59,9 @@ struct Refusals {
     if (placement.as_given()) return false;
     return (placement.closed ? loops_stay : lines_stay) || stay.contains(placement.block);
   }
-  bool Refuse(const LayerOrder& order) const;
+
+  // REQUIRES: the layer begins with block `first`.
+  bool Refuse(const LayerOrder& order, uint32_t first) const;
 
   // So many paths around a link may be as sliced next time: 1, 4, 16 and so on.
   size_t Reach();

@@ -23,6 +23,7 @@ struct Finding {
   uint32_t optimised_line = 0;
   int64_t layer = -1;
   std::string what;
+  uint32_t before_line = 0;  // of the optimised file: what has to come before that; 0: nothing
 };
 
 // Where something was observed.

@@ -53,6 +53,7 @@ struct VerifyBreak {
   size_t optimised_line = 0;  // 0: none
   int64_t layer = -1;         // from 0, as the verifier counts them; -1: in no layer
   std::string message;        // with both files and lines
+  size_t before_line = 0;     // of the optimised file: what has to come before that; 0: nothing
 };
 
 struct VerifyReport {

@@ -336,7 +336,8 @@ void Verifier::Add(Finding finding) {
       {finding.rule, finding.original_line, finding.optimised_line, finding.layer,
        absl::StrFormat("%s: %s (%s; %s)", place(optimised_.name, finding.optimised_line),
                        finding.what, std::string(VerifyRuleName(finding.rule)),
-                       place(original_.name, finding.original_line))});
+                       place(original_.name, finding.original_line)),
+       finding.before_line});
 }
 
 // What no line of G-code shows: the byte order mark and the line ends. And the line that says what

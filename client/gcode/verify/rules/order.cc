@@ -281,7 +281,8 @@ class OrderKeeper {
                                                "original, but there it comes after it",
                                                std::string(PathClassName(layer_.ClassOf(later))),
                                                std::string(PathClassName(layer_.ClassOf(earlier))),
-                                               was.LineOf(was.paths[earlier]))});
+                                               was.LineOf(was.paths[earlier])),
+                               is.segments[visits[PlaceOf(earlier)].first_segment].line});
   }
 
   const LayerPair& layer_;

@@ -1,5 +1,6 @@
 #include "client/gcode/choose/layer_choice.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,6 +20,9 @@
 
 namespace traverse::gcode {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::Not;
 
 // A layer of lines of infill, each at its height, in a bad order between the first and the last.
 std::string BadLayer(int number) {
@@ -68,6 +72,33 @@ TEST(LayerChooser, TakesAnOrderThatIsQuickerAndTheFilesIfThatIsRuledOut) {
   // The order of the file is always there.
   EXPECT_FALSE(chooser.RuleOutLink(0, 0));
   EXPECT_FALSE(chooser.RuleOutAll(0));
+}
+
+// Of what was found only what is refused changes.
+TEST(LayerChooser, KeepsThePairThatIsRuledOutAndTheRestOfTheOrder) {
+  const auto file = BadFile(1);
+  const FileOrder found = Up(*file);
+  LayerChooser chooser(*file, found, kFree);
+  const ChosenLayers first = chooser.Choose();
+  ASSERT_EQ(first.orders, found);
+  const auto line_of = [&first](const std::string& words) {
+    const std::string& text = first.texts[0].paths;
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(text.find(words));
+    return static_cast<size_t>(std::count(text.begin(), end, '\n'));
+  };
+
+  // Number 3 comes before number 1 there.
+  EXPECT_TRUE(chooser.RuleOutOrder(0, line_of("Y20 E"), line_of("Y30 E")));
+  const ChosenLayers second = chooser.Choose();
+  ASSERT_EQ(second.changed, 1);
+  std::vector<uint32_t> paths;
+  for (const Placement& placement : second.orders[0]) {
+    paths.push_back(placement.block - file->layers[0].first_block);
+  }
+  EXPECT_LT(std::find(paths.begin(), paths.end(), 1u), std::find(paths.begin(), paths.end(), 3u));
+  EXPECT_THAT(paths, Not(ElementsAre(0, 1, 2, 3, 4)));
+  // What comes first as sliced can't be refused.
+  EXPECT_FALSE(chooser.RuleOutOrder(0, 0, 1000));
 }
 
 // Short lines all over a plate, in no order.

@@ -56,6 +56,42 @@ bool HasOrderOfItsOwn(const LayerOrder& order, const LayerOrder& before, size_t 
   return false;
 }
 
+TEST(InOrderOf, PutsTheFirstOfAPairRightBeforeTheSecond) {
+  const LayerOrder order = {Path(10), Path(14, 1), Path(15), Path(12), Path(11, 1), Path(13)};
+
+  EXPECT_TRUE(BreaksAnyOf(order, 10, {{0, 1}, {1, 4}}));
+  EXPECT_FALSE(BreaksAnyOf(order, 10, {{0, 1}, {1, 3}}));
+  // 12 comes before 14 as sliced, and 15 behind it.
+  EXPECT_EQ(InOrderOf(order, 10, {{1, 4}}),
+            (LayerOrder{Path(10), Path(12), Path(11, 1), Path(14, 1), Path(15), Path(13)}));
+  EXPECT_EQ(InOrderOf(order, 10, {{0, 1}}), order);
+}
+
+TEST(InOrderOf, ManyPairsAreSliced) {
+  constexpr uint32_t kPaths = 300;
+  LayerOrder order = Sliced(kPaths);
+  std::reverse(order.begin() + 1, order.end() - 1);
+  std::vector<PathPair> pairs;
+  for (uint32_t path = 1; path + 2 < kPaths; ++path) pairs.emplace_back(path, path + 1);
+
+  EXPECT_FALSE(BreaksAnyOf(InOrderOf(order, 10, pairs), 10, pairs));
+}
+
+// Nothing else changes places but towards the order as sliced.
+TEST(InOrderOf, OtherPairsStayInTheirOrderOrAreAsSliced) {
+  constexpr uint32_t kPaths = 9;
+  Rng rng(5);
+  for (int round = 0; round < 300; ++round) {
+    LayerOrder order = Sliced(kPaths);
+    for (uint32_t i = kPaths - 1; i > 0; --i) std::swap(order[i], order[rng.Below(i + 1)]);
+    const uint32_t first = rng.Below(kPaths - 1);
+    const PathPair pair{first, first + 1 + rng.Below(kPaths - 1 - first)};
+    const LayerOrder made = InOrderOf(order, 10, {pair});
+    EXPECT_FALSE(BreaksAnyOf(made, 10, {pair}));
+    EXPECT_FALSE(HasOrderOfItsOwn(made, order, kPaths));
+  }
+}
+
 TEST(OrdersWithoutLink, PairsStayInTheirOrderOrAreAsSliced) {
   constexpr uint32_t kPaths = 9;
   Rng rng(5);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,22 @@ TEST(VerifyOrder, InfillStaysBehindTheWallBesideIt) {
   VerifyPermissions allowed;
   allowed.infill_order = true;
   EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare, allowed), "");
+}
+
+// A break says what has to come first, too.
+TEST(VerifyOrder, NamesBothPathsOfTheOtherFile) {
+  const std::string near = Line("Internal infill", "X12 Y10.4", "X18 Y10.4");
+  VerifyOptions options;
+  options.rules = RuleBit(VerifyRule::kOrder);
+  const std::string other = kHead + near + kSquare;
+  const VerifyReport report = CheckGcode(kHead + kSquare + near, "a", other, "b", options);
+  ASSERT_EQ(report.breaks.size(), 1u);
+  const auto line_of = [&other](const std::string& text) {
+    const auto end = other.begin() + static_cast<std::ptrdiff_t>(other.find(text));
+    return static_cast<size_t>(std::count(other.begin(), end, '\n') + 1);
+  };
+  EXPECT_EQ(report.breaks[0].optimised_line, line_of("G1 X18 Y10.4 E"));
+  EXPECT_EQ(report.breaks[0].before_line, line_of("G1 X20 Y10 E"));
 }
 
 // All lines cross all others: pairs that need no order, or keep it, take no time.
