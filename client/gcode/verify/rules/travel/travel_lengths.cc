@@ -39,6 +39,7 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
   const TraceMove* first = nullptr;
   const TraceMove* last = nullptr;
   const TraceMove* sink = SinkOf(chunk, link);
+  const TraceMove* departure = DepartureOf(chunk, link);  // retracts right behind it
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     travel.retracts |= Retracts(move);
@@ -51,7 +52,8 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
     last = &move;
     const auto length = static_cast<float>(move.length_mm());
     travel.length_mm += length;
-    if (move.open && !(only_new && layer.IsHidden(link))) travel.open_mm += length;
+    const bool open = move.open && &move != departure && !(only_new && layer.IsHidden(link));
+    if (open) travel.open_mm += length;
     if (layer.IsKnown(move)) continue;
     if (known) travel.line = move.line;
     known = false;

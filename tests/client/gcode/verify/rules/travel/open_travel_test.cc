@@ -162,6 +162,18 @@ TEST(VerifyOpenTravels, LeadToNoLayerIfNoneDid) {
   EXPECT_EQ(Broken(a + as_far, open + third + Travel("X0 Y5.8") + last), "");
 }
 
+// How travel leaves its path before it retracts is no open travel, wherever it leads.
+TEST(VerifyOpenTravels, AreNoDeparturesOnTheWayToALayer) {
+  const std::string wall = kSquare + "G1 X10.3 Y10.3 F9000\n";
+  const std::string next = kNextLayer + Line("Internal infill", "X9.3 Y5", "X0 Y5.4");
+  const std::string a = kHead + wall + kOther + next;
+  const std::string b = kHead + kOther + wall + next;
+  EXPECT_EQ(Broken(a, b), "");
+  // Without a retraction behind it, it is.
+  EXPECT_THAT(Broken(a, With(b, Travel("X9.3 Y5"), "G1 X9.3 Y5 F9000\n")),
+              HasSubstr("open_travel"));
+}
+
 TEST(VerifyOpenTravels, AreNoLongerThanTheLongestWhateverTheyCross) {
   const std::string far = Line("Internal infill", "X80 Y5", "X89 Y5");
   const std::string near = kOne + "G1 X9 Y2 F9000\nG1 F1800\nG1 X0 Y2 E.3\n";
