@@ -3,9 +3,10 @@
 namespace traverse::gcode {
 namespace {
 
-// Profiles of some printers leave the line with the name out.
+// Profiles of some printers leave the line with the name out, and Cura before 2.1 wrote none.
 constexpr Head kHeads[] = {{";Generated with Cura_SteamEngine"},
-                           {";FLAVOR:", ";Layer height: ", "Cura"}};
+                           {";FLAVOR:", ";Layer height: ", "Cura"},
+                           {";Sliced at: ", ";Basic settings: Layer height: ", "Cura"}};
 
 constexpr Mark kMarks[] = {
     {";TYPE:", MarkKind::kType},
