@@ -138,6 +138,7 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
     }
     if (step.kind == StepKind::kProgress) pending_ |= kBlockProgress;
   } else if (where_ != Where::kHead && !in_tail) {
+    if (where_ == Where::kTail && TailLeadsAside()) UndoTail();
     where_ = Where::kLink;
   }
   NoteInLink(step, before, after);

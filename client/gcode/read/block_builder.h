@@ -72,6 +72,7 @@ class BlockBuilder {
   bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
   void TakeTail(const Step& step, const MachineState& before, const MachineState& after);
   bool TailIsOwn() const;
+  bool TailLeadsAside() const;
   void UndoTail();
   void BeginBlock(const Step& step, const MachineState& before, const MachineState& after);
   void ExtendBlock(const Step& step, const MachineState& before, const MachineState& after);

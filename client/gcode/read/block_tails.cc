@@ -9,6 +9,9 @@ void BlockBuilder::TakeTail(const Step& step, const MachineState& before,
   if (!has_tail_) {
     before_tail_ = Last();
     has_tail_ = true;
+  } else {
+    tail_.flags |= link_.flags;
+    link_ = tail_;
   }
   NoteInLink(step, before, after);
   tail_ = link_;
@@ -39,9 +42,16 @@ bool BlockBuilder::TailIsOwn() const {
   return Distance(on, tail) <= kBesideMm;
 }
 
+// A single move as fast as the path, neither straight on nor back to where that began: travel
+// leaves the path by it.
+bool BlockBuilder::TailLeadsAside() const {
+  return tail_.xy_moves == 1 && (Last().flags & kBlockCoast) == 0 && !TailIsOwn();
+}
+
 // The next path begins where the tail ended: the tail was the travel to it.
 void BlockBuilder::UndoTail() {
   Last() = before_tail_;
+  has_tail_ = false;
   tail_.flags |= link_.flags;
   link_ = tail_;
 }

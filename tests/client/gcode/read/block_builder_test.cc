@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "client/gcode/model/block_feature.h"
 #include "tests/client/gcode/read/block_text.h"
@@ -190,6 +191,20 @@ TEST(BlockBuilder, ATailThatLeadsToTheNextPathIsTravel) {
   ASSERT_EQ(file->blocks.size(), 2u);
   EXPECT_FALSE(file->blocks[0].flags & kBlockTail);
   EXPECT_FALSE(file->blocks[1].link & kLinkFixed);
+}
+
+// As fast as the path, but to one side, before it retracts: so travel leaves the path.
+TEST(BlockBuilder, ATailThatLeadsAsideIsTravel) {
+  const auto flags = [](const std::string& tail) {
+    const auto file = Read("M83\nG1 X0 Y0 F9000\nG1 F1200 X5 E1\n" + tail +
+                           "G1 F2400 E-1\nG1 F9000 X0 Y9\nG1 F2400 E1\nG1 F1200 X5 E1\n");
+    return std::pair(file->blocks[0].flags & kBlockTail, file->blocks[1].link & kLinkDeparts);
+  };
+  EXPECT_EQ(flags("G1 X5.4 Y.4\n"), std::pair(0, int{kLinkDeparts}));
+  EXPECT_EQ(flags("G1 X5.4\n"), std::pair(int{kBlockTail}, 0));
+  // Coasting may go round a corner.
+  EXPECT_EQ(flags("G1 X5.4 Y.4 F1100\n"), std::pair(int{kBlockTail}, 0));
+  EXPECT_EQ(flags("G1 X5.1\nG1 X5.1 Y.4\n"), std::pair(int{kBlockTail}, 0));
 }
 
 TEST(BlockBuilder, ATailThatGoesOnStaysWithItsPath) {
