@@ -38,7 +38,7 @@ struct PolishLimit {
 
   // An estimate takes about twice as long; but gains come late and in steps, and a while without a
   // large one is often followed by one with it.
-  static constexpr double kSecondsPerTravel = 1e-7;
+  static constexpr double kSecondsPerTravel = 1.5e-7;
 
   // One of a travel move that leads around walls.
   static constexpr double kSecondsPerDetour = 1e-6;
