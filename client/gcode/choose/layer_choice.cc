@@ -1,6 +1,5 @@
 #include "client/gcode/choose/layer_choice.h"
 
-#include <atomic>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -378,87 +377,15 @@ class LayerChooser::Impl {
     filler_.Add(order, layer, columns_[layer]);
   }
 
-  // The travel moves are written one after the other, for each needs to know where the extruder's
-  // register is; then the paths, side by side. Where they set the register themselves, and it
-  // counts on from elsewhere than when they were measured, they are written at once.
-  ChosenLayers Write() {
-    ChosenLayers chosen;
-    chosen.texts.resize(columns_.size());
-    for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
+  ChosenLayers Write() const {
+    ChosenLayers chosen = WriteChosen(file_, columns_, threads_);
     chosen.rest = {rests_.least_seconds(), rests_.LeastOf(TimedRow(columns_, false)),
                    rests_.LeastOf(TimedRow(columns_, true))};
-    chosen.forecast = ForecastOf(columns_);
-    std::vector<size_t> left;
-    std::vector<PartStart> starts;  // [layer] of its paths
-    std::vector<Decimal> ends;      // [layer] the register behind them, as foreseen
-    for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      const LayerChoice& choice = Chosen(layer);
-      LayerText& text = chosen.texts[layer];
-      starts.push_back(WriteTravelTo(layer, chosen.behind, text.travel));
-      chosen.behind = choice.behind;
-      if (Fits(layer, starts[layer])) {
-        starts[layer] = choice.start;
-        if (columns_[layer].chosen != 0) left.push_back(layer);
-      } else if (choice.resets_e) {
-        chosen.behind = WritePathsOf(layer, starts[layer], text.paths);
-      } else {
-        chosen.behind.machine.e += starts[layer].machine.e - choice.start.machine.e;
-        left.push_back(layer);
-      }
-      ends.push_back(chosen.behind.machine.e);
-    }
-    std::atomic<bool> as_foreseen = true;
-    ParallelFor(left.size(), threads_, [&](size_t i) {
-      const size_t layer = left[i];
-      const PartStart behind = WritePathsOf(layer, starts[layer], chosen.texts[layer].paths);
-      if (behind.machine.e != ends[layer]) as_foreseen = false;
-    });
-    if (!as_foreseen) WriteOneByOne(chosen);
     return chosen;
-  }
-
-  // Where the register is set in some unusual spelling.
-  void WriteOneByOne(ChosenLayers& chosen) const {
-    for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      LayerText& text = chosen.texts[layer];
-      text = LayerText{};
-      const PartStart start = WriteTravelTo(layer, chosen.behind, text.travel);
-      chosen.behind = WritePathsOf(layer, start, text.paths);
-    }
   }
 
   const LayerChoice& Chosen(size_t layer) const {
     return columns_[layer].choices[columns_[layer].chosen];
-  }
-
-  // The paths written for the choice may stand behind `start`.
-  bool Fits(size_t layer, const PartStart& start) const {
-    return start.machine.RelativeE() || start.machine.e == Chosen(layer).start.machine.e;
-  }
-
-  // `at` is the machine behind the layer before; of no meaning for the first one.
-  PartStart WriteTravelTo(size_t layer, const PartStart& at, std::string& text) const {
-    if (layer == 0) {
-      const Block& first = file_.blocks.front();
-      return {StateAt(file_, first), file_.states[first.state_in]};
-    }
-    return columns_[layer].writer->WriteTravel(Chosen(layer - 1).order.back(),
-                                               Chosen(layer).order.front(), at, text);
-  }
-
-  PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
-    const LayerChoice& choice = Chosen(layer);
-    return choice.writer->WritePaths(choice.order, start, text, nullptr, choice.as_sliced);
-  }
-
-  void NoteTotals(size_t layer, ChosenLayers& chosen) const {
-    const LayerColumn& column = columns_[layer];
-    chosen.orders.push_back(column.chosen == 0 ? LayerOrder() : Chosen(layer).order);
-    const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
-    chosen.given.push_back(column.totals.Whole(0, 0));
-    chosen.totals.push_back(column.totals.Whole(before, column.chosen));
-    chosen.changed += column.chosen != 0 ? 1 : 0;
-    if (column.blocked) chosen.blocked.push_back(layer);
   }
 
   const GcodeFile& file_;
@@ -511,13 +438,5 @@ void LayerChooser::Tighten(int64_t crossings) { impl_->Tighten(crossings); }
 double LayerChooser::SecondsSavedByFast() const { return impl_->SecondsSavedByFast(); }
 
 bool LayerChooser::IsGivenUp(size_t layer) const { return impl_->IsGivenUp(layer); }
-
-void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
-  for (size_t i = 0; i < texts.size(); ++i) {
-    text += texts[i].travel;
-    text +=
-        texts[i].paths.empty() ? file.PathsText(file.layers[i]) : std::string_view(texts[i].paths);
-  }
-}
 
 }  // namespace traverse::gcode

@@ -13,52 +13,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "client/gcode/choose/forecast.h"
-#include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/chosen_layers.h"
 #include "client/gcode/choose/order_polish.h"
-#include "client/gcode/measure/print_totals.h"
-#include "client/gcode/model/part_start.h"
-#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/policy.h"
 
 namespace traverse::gcode {
 
 class HiddenMoves;
-
-// One order for each layer of a file; empty for the file's own order.
-using FileOrder = std::vector<LayerOrder>;
-
-// The shortest rest of an island that rests in the file, before and after.
-struct RestTotals {
-  double required_seconds = 0;  // that are enough; 0: no island must rest
-  std::optional<LeastRest> given;
-  std::optional<LeastRest> chosen;
-};
-
-// A layer as written. `paths` is empty if the paths are as in the file.
-struct LayerText {
-  std::string travel;
-  std::string paths;
-};
-
-// The layers of a file, each in its chosen order.
-struct ChosenLayers {
-  std::vector<LayerText> texts;     // [layer], empty for the file's own order
-  FileOrder orders;                 // [layer], empty for the file's own order
-  PartStart behind;                 // the machine after the last layer
-  std::vector<PrintTotals> given;   // [layer], with the travel to it, in the file's order
-  std::vector<PrintTotals> totals;  // [layer], as chosen
-  int64_t changed = 0;              // layers in another order than the file's
-  std::vector<size_t> blocked;      // layers with orders found where something is in the way
-  Forecast forecast;                // of all travel between paths
-  RestTotals rest;                  // of islands
-
-  // Appends all layers, from the first path to the end of the last one.
-  void AppendTo(const GcodeFile& file, std::string& text) const;
-};
 
 struct ChoiceOptions : Liberties {
   int threads = 1;
