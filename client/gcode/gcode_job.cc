@@ -42,8 +42,6 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
   time.set_retraction_threshold_mm(std::clamp(model.retraction_threshold_mm, 0.0, 1e7));
 }
 
-// Rounding of sums of filament.
-
 // Longer than any travel.
 constexpr double kNeverMm = 1e7;
 

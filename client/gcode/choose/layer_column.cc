@@ -10,8 +10,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Filament pushed beyond what was retracted, in mm; less is rounding.
-
 // As slicers write it: a sign that the extruder's register does not count through.
 bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
 

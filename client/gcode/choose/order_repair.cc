@@ -15,26 +15,33 @@ LayerOrder::iterator Find(LayerOrder& order, uint32_t block) {
                       [block](const Placement& placement) { return placement.block == block; });
 }
 
-// `order` with `first` and the path behind it next to each other, both as sliced. Paths between
-// them that come earlier as sliced go before both, all others behind.
-LayerOrder Joined(LayerOrder order, const Placement& first, const Placement& second) {
-  auto begin = Find(order, first.block);
-  auto end = Find(order, second.block);
-  if (end < begin) std::swap(begin, end);
-  ++end;
+// `order` with `first` and `second`, the paths at the places `begin` and `end` in either order,
+// next to each other. Paths between them that come before `second` as sliced go before both, all
+// others behind.
+LayerOrder Joined(LayerOrder order, size_t begin, size_t end, const Placement& first,
+                  const Placement& second) {
   LayerOrder behind;
-  auto to = begin;
-  for (auto path = begin; path != end; ++path) {
-    if (path->block < first.block) {
-      *to++ = *path;
-    } else if (path->block > second.block) {
-      behind.push_back(*path);
+  auto to = order.begin() + static_cast<std::ptrdiff_t>(begin);
+  for (size_t place = begin + 1; place < end; ++place) {
+    if (order[place].block < second.block) {
+      *to++ = order[place];
+    } else {
+      behind.push_back(order[place]);
     }
   }
   *to++ = first;
   *to++ = second;
   std::copy(behind.begin(), behind.end(), to);
   return order;
+}
+
+// `order` with `first` and the path behind it as sliced next to each other, both as sliced.
+LayerOrder JoinedAsSliced(LayerOrder order, const Placement& first, const Placement& second) {
+  const auto a = Find(order, first.block) - order.begin();
+  const auto b = Find(order, second.block) - order.begin();
+  const auto [begin, end] = std::minmax(a, b);
+  return Joined(std::move(order), static_cast<size_t>(begin), static_cast<size_t>(end), first,
+                second);
 }
 
 // [path] its place in `order`.
@@ -47,23 +54,9 @@ std::vector<size_t> PlacesIn(const LayerOrder& order, uint32_t first) {
 // `order` with the path at `later` behind the one at `earlier`, a place behind it, which comes
 // before it as sliced.
 LayerOrder Ordered(LayerOrder order, size_t later, size_t earlier) {
-  const auto begin = order.begin() + static_cast<std::ptrdiff_t>(later);
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(earlier);
-  const Placement moved = *begin;
-  const Placement last = *end;
-  LayerOrder behind;
-  auto to = begin;
-  for (auto path = begin + 1; path != end; ++path) {
-    if (path->block < moved.block) {
-      *to++ = *path;
-    } else {
-      behind.push_back(*path);
-    }
-  }
-  *to++ = last;
-  *to++ = moved;
-  std::copy(behind.begin(), behind.end(), to);
-  return order;
+  const Placement first = order[earlier];
+  const Placement second = order[later];
+  return Joined(std::move(order), later, earlier, first, second);
 }
 
 // `order` with its paths at [begin, end) as sliced.
@@ -117,8 +110,9 @@ std::vector<LayerOrder> OrdersWithoutLink(const LayerOrder& order, size_t place,
   const size_t from = order[place - 1].block - first;
   const size_t to = order[place].block - first;
   std::vector<LayerOrder> orders;
-  if (from + 1 < sliced.size()) orders.push_back(Joined(order, sliced[from], sliced[from + 1]));
-  if (to > 0) orders.push_back(Joined(order, sliced[to - 1], sliced[to]));
+  if (from + 1 < sliced.size())
+    orders.push_back(JoinedAsSliced(order, sliced[from], sliced[from + 1]));
+  if (to > 0) orders.push_back(JoinedAsSliced(order, sliced[to - 1], sliced[to]));
   orders.push_back(
       AsSliced(order, place - std::min(place, reach), std::min(place + reach, order.size())));
   return orders;

@@ -106,18 +106,18 @@ SlicerSettings ReadSettings(std::string_view text) {
   settings.monotonic_bottom = Begins(bottom, "monotonic");
   settings.leads_around_walls =
       first_of("avoid_crossing_perimeters", "reduce_crossing_wall") == "1";
-  // Prints are at most so far apart, and heads no higher.
-  constexpr double kMostClearanceMm = 100;
-  const auto room = [](double mm, double& stated_mm) {
-    if (mm > 0 && mm <= kMostClearanceMm) stated_mm = mm;
+  // Prints are at most so far apart, heads no higher, and filament no thicker.
+  constexpr double kMostStatedMm = 100;
+  const auto take = [](double mm, double& stated_mm) {
+    if (mm > 0 && mm <= kMostStatedMm) stated_mm = mm;
   };
   const StatedSettings stated = ReadStatedSettings(text);
-  room(stated.filament_mm.value_or(0), settings.filament_mm);
-  room(stated.head_reach_mm.value_or(0), settings.clearance_radius_mm);
-  room(stated.head_above_tip_mm.value_or(0), settings.nozzle_height_mm);
-  room(GreatestOf(first_of("extruder_clearance_radius", "extruder_clearance_max_radius")),
+  take(stated.filament_mm.value_or(0), settings.filament_mm);
+  take(stated.head_reach_mm.value_or(0), settings.clearance_radius_mm);
+  take(stated.head_above_tip_mm.value_or(0), settings.nozzle_height_mm);
+  take(GreatestOf(first_of("extruder_clearance_radius", "extruder_clearance_max_radius")),
        settings.clearance_radius_mm);
-  room(GreatestOf(first_of("nozzle_height", "nozzle_height")), settings.nozzle_height_mm);
+  take(GreatestOf(first_of("nozzle_height", "nozzle_height")), settings.nozzle_height_mm);
   settings.least_layer_seconds = stated.least_layer_seconds.value_or(10);
   return settings;
 }

@@ -20,6 +20,11 @@ constexpr std::array<std::string_view, 8> kNames = {
 
 constexpr std::array<std::string_view, 2> kFilamentNames = {"filamentdiameter", "materialdiameter"};
 
+template <size_t kSize>
+bool IsOneOf(const std::array<std::string_view, kSize>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 constexpr size_t kLongestName = 64;
 
 // Where CuraEngine keeps its settings: lines of 80 characters, in which a new line is "\\n".
@@ -66,10 +71,9 @@ class SettingNotes {
     if (end == std::string_view::npos || end > kLongestName) return;
     const std::string name = LettersOf(setting.substr(0, end));
     const std::string_view value = setting.substr(end + 1);
-    if (std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
+    if (IsOneOf(kNames, name)) {
       TakeGreatest(value, found_.least_layer_seconds);
-    } else if (std::find(kFilamentNames.begin(), kFilamentNames.end(), name) !=
-               kFilamentNames.end()) {
+    } else if (IsOneOf(kFilamentNames, name)) {
       TakeGreatest(value, found_.filament_mm);
     } else if (name == kHeadDistance) {
       TakeGreatest(value, found_.head_above_tip_mm);

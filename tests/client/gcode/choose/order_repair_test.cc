@@ -24,6 +24,14 @@ LayerOrder Sliced(size_t paths) {
   return order;
 }
 
+LayerOrder Shuffled(size_t paths, Rng& rng) {
+  LayerOrder order = Sliced(paths);
+  for (uint32_t i = static_cast<uint32_t>(paths) - 1; i > 0; --i) {
+    std::swap(order[i], order[rng.Below(i + 1)]);
+  }
+  return order;
+}
+
 TEST(OrdersWithoutLink, EachPathOfTheLinkIsBesideItsOwnNeighbor) {
   const LayerOrder order = {Path(10), Path(13, 1), Path(11), Path(14), Path(12, 1), Path(15)};
 
@@ -82,8 +90,7 @@ TEST(InOrderOf, OtherPairsStayInTheirOrderOrAreAsSliced) {
   constexpr uint32_t kPaths = 9;
   Rng rng(5);
   for (int round = 0; round < 300; ++round) {
-    LayerOrder order = Sliced(kPaths);
-    for (uint32_t i = kPaths - 1; i > 0; --i) std::swap(order[i], order[rng.Below(i + 1)]);
+    const LayerOrder order = Shuffled(kPaths, rng);
     const uint32_t first = rng.Below(kPaths - 1);
     const PathPair pair{first, first + 1 + rng.Below(kPaths - 1 - first)};
     const LayerOrder made = InOrderOf(order, 10, {pair});
@@ -96,8 +103,7 @@ TEST(OrdersWithoutLink, PairsStayInTheirOrderOrAreAsSliced) {
   constexpr uint32_t kPaths = 9;
   Rng rng(5);
   for (int round = 0; round < 200; ++round) {
-    LayerOrder order = Sliced(kPaths);
-    for (uint32_t i = kPaths - 1; i > 0; --i) std::swap(order[i], order[rng.Below(i + 1)]);
+    const LayerOrder order = Shuffled(kPaths, rng);
     const size_t place = 1 + rng.Below(kPaths - 1);
     std::vector<LayerOrder> orders =
         OrdersWithoutLink(order, place, Sliced(kPaths), 1 + rng.Below(4));
