@@ -4,6 +4,9 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 
+#include <algorithm>
+
+#include "absl/types/span.h"
 #include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/trace/trace.h"
 
@@ -17,18 +20,16 @@ inline bool Retracts(const TraceMove& move) {
 // and wait.
 inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   constexpr double kLongestMm = 1.0;
-  const TraceLink& traced = chunk.links[link];
-  if (traced.end_move - traced.first_move < 2 || traced.scripted) return nullptr;
-  const TraceMove& first = chunk.moves[traced.first_move];
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  if (moves.size() < 2 || chunk.links[link].scripted) return nullptr;
+  const TraceMove& first = moves.front();
   const bool leaves = first.kind == MoveKind::kTravel && first.open && first.in_print &&
                       first.z_from_mm == first.z_to_mm && first.length_mm() >= kLeastDepartureMm &&
                       first.length_mm() <= kLongestMm;
-  uint32_t next = traced.first_move + 1;
-  const auto goes_on = [&chunk](uint32_t m) {
-    return chunk.moves[m].kind == MoveKind::kUp || chunk.moves[m].kind == MoveKind::kDwell;
-  };
-  while (next + 1 < traced.end_move && goes_on(next)) ++next;
-  return leaves && Retracts(chunk.moves[next]) ? &first : nullptr;
+  const auto next = std::find_if(moves.begin() + 1, moves.end() - 1, [](const TraceMove& move) {
+    return move.kind != MoveKind::kUp && move.kind != MoveKind::kDwell;
+  });
+  return leaves && Retracts(*next) ? &first : nullptr;
 }
 
 }  // namespace traverse::gcode

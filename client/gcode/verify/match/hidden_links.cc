@@ -73,24 +73,20 @@ class HiddenTravel {
 // The moves of `link` behind its first `skipped` ones, if all of it is level open travel; else
 // none.
 absl::Span<const TraceMove> TravelAlone(const TraceChunk& chunk, uint32_t link, uint32_t skipped) {
-  const TraceLink& traced = chunk.links[link];
-  if (traced.new_layer || traced.scripted || traced.first_move + skipped >= traced.end_move) {
-    return {};
-  }
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  if (chunk.links[link].new_layer || chunk.links[link].scripted) return {};
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  const bool alone = std::all_of(moves.begin(), moves.end(), [](const TraceMove& move) {
     const bool level = move.z_from_mm == move.z_to_mm;
-    if (move.kind != MoveKind::kTravel || !move.open || move.arc || !level) return {};
-  }
-  return absl::MakeSpan(chunk.moves)
-      .subspan(traced.first_move + skipped, traced.end_move - traced.first_move - skipped);
+    return move.kind == MoveKind::kTravel && move.open && !move.arc && level;
+  });
+  return alone ? moves.subspan(skipped) : absl::Span<const TraceMove>();
 }
 
 // How many of `moves` go along the path that they leave, however fast.
 size_t MovesAlong(const LayerPair& layer, const Visit& left, absl::Span<const TraceMove> moves) {
   const uint32_t along = LayerPair::TailMoves(layer.is(), left.last_path, layer.PiecesOf(left.path),
                                               /*any_speed=*/true);
-  const TraceMove* end = &layer.is().moves[layer.is().links[left.last_path + 1].first_move] + along;
+  const TraceMove* end = layer.is().MovesOf(left.last_path + 1).data() + along;
   size_t count = 0;
   double length = 0;
   for (const TraceMove& move : moves) {

@@ -46,24 +46,24 @@ bool GoesStraightOn(const TraceMove& move, const Piece& last) {
   return dot >= (length < kLeastDepartureMm ? 0 : kStraightCosine * length * before);
 }
 
-// The end of the moves that coast in the link behind `path`, whose last line is `last`: no faster
-// than the path, they go straight on from there. Slicers coast round corners, too; but what leads
-// farther, or to the next path, is travel behind the first of them.
-uint32_t CoastingEnd(const TraceChunk& chunk, uint32_t path, const Piece& last) {
-  const TraceLink& link = chunk.links[path + 1];
+// How many moves coast at the beginning of the link behind `path`, whose last line is `last`: no
+// faster than the path, they go straight on from there. Slicers coast round corners, too; but what
+// leads farther, or to the next path, is travel behind the first of them.
+uint32_t CoastingMoves(const TraceChunk& chunk, uint32_t path, const Piece& last) {
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
   double length = 0;
-  uint32_t m = link.first_move;
-  for (; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  uint32_t m = 0;
+  for (; m < moves.size(); ++m) {
+    const TraceMove& move = moves[m];
     const bool slow =
         move.kind == MoveKind::kTravel && move.open && move.feed <= chunk.paths[path].feed;
     if (!slow || move.arc || move.z_to_mm != move.z_from_mm) break;
     const double before = std::exchange(length, length + move.length_mm());
-    if (m == link.first_move && !GoesStraightOn(move, last)) return m;
-    if (length > kLongestTailMm) return link.first_move + (before > 0 ? 1 : 0);
+    if (m == 0 && !GoesStraightOn(move, last)) return 0;
+    if (length > kLongestTailMm) return before > 0 ? 1 : 0;
   }
-  const bool leads_on = m == link.end_move && path + 1 < chunk.paths.size();
-  return leads_on ? std::min(m, link.first_move + 1) : m;
+  const bool leads_on = m == moves.size() && path + 1 < chunk.paths.size();
+  return leads_on ? std::min(m, 1u) : m;
 }
 
 bool LiesOn(Point p, absl::Span<const Piece> pieces) {
@@ -252,10 +252,8 @@ void LayerPair::Match() {
     visits_.insert(visits_.end(), visits.begin(), visits.end());
     section_begin_.push_back(visits_.size());
   }
-  for (uint32_t link = first_path_; link <= end_was_; ++link) {
-    for (uint32_t m = was_.links[link].first_move; m < was_.links[link].end_move; ++m) {
-      known_.insert(was_.moves[m].identity);
-    }
+  for (const TraceMove& move : was_.MovesOfLinks(first_path_, end_was_ + 1)) {
+    known_.insert(move.identity);
   }
 }
 
@@ -269,21 +267,21 @@ uint32_t LayerPair::OriginalLine(uint32_t path) const {
 
 uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
                               absl::Span<const Piece> pieces, bool any_speed) {
-  const TraceLink& link = chunk.links[path + 1];
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
   const TracePath& traced = chunk.paths[path];
   const Point before = chunk.StartOf(traced, traced.end_segment - 1);
   const Piece last{before, chunk.EndOf(traced), path};
   // Or where the tail went already.
   const auto lies_on = [&](Point p, uint32_t end) {
-    for (uint32_t m = link.first_move; m < end; ++m) {
-      if (DistanceToPiece(p, chunk.moves[m].from, chunk.moves[m].to) <= kOnPathMm) return true;
+    for (const TraceMove& move : moves.first(end)) {
+      if (DistanceToPiece(p, move.from, move.to) <= kOnPathMm) return true;
     }
     return LiesOn(p, pieces);
   };
-  const uint32_t coasting = any_speed ? link.first_move : CoastingEnd(chunk, path, last);
-  uint32_t m = link.first_move + (any_speed ? TailMoves(chunk, path, pieces) : 0);
-  for (; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  const uint32_t coasting = any_speed ? 0 : CoastingMoves(chunk, path, last);
+  uint32_t m = any_speed ? TailMoves(chunk, path, pieces) : 0;
+  for (; m < moves.size(); ++m) {
+    const TraceMove& move = moves[m];
     if (any_speed && !move.sideways()) continue;
     if (move.kind != MoveKind::kTravel || !(move.open || any_speed)) break;
     if (move.feed > traced.feed && !any_speed) break;
@@ -291,16 +289,14 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
     const bool along = lies_on(move.to, m) && lies_on(move.middle, m);
     if (m >= coasting && !along) break;
   }
-  return m - link.first_move;
+  return m;
 }
 
 LayerPair::Travel LayerPair::TravelOf(const TraceChunk& chunk, uint32_t link, bool open,
                                       uint32_t skipped) const {
-  const TraceLink& traced = chunk.links[link];
   std::vector<const TraceMove*> moves;
   Travel travel;
-  for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(link, skipped)) {
     if (move.kind != MoveKind::kTravel || move.open != open) continue;
     moves.push_back(&move);
     travel.length_mm += move.length_mm();

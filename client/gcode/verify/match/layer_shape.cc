@@ -13,13 +13,11 @@ constexpr double kLeastRowMm = 0.2;
 constexpr double kRowsOfPiece = 4;
 
 bool UsesOneTool(const LayerPair& layer) {
-  const TraceChunk& was = layer.was();
-  const uint32_t first = was.links[layer.first_path_was()].end_move;
-  const uint32_t end = was.links[layer.end_path_was()].first_move;
-  for (uint32_t m = first; m < end; ++m) {
-    if (was.moves[m].tool != was.moves[first].tool) return false;
-  }
-  return true;
+  if (layer.end_path_was() - layer.first_path_was() < 2) return true;
+  const absl::Span<const TraceMove> moves =
+      layer.was().MovesOfLinks(layer.first_path_was() + 1, layer.end_path_was());
+  return std::all_of(moves.begin(), moves.end(),
+                     [&moves](const TraceMove& move) { return move.tool == moves.front().tool; });
 }
 
 }  // namespace

@@ -76,11 +76,9 @@ bool HasAny(const std::vector<LinkPart>& parts, const LinkPart& part, const Like
 LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
                        const LayerPair* known_in)
     : known_in_(known_in) {
-  const TraceLink& traced = chunk.links[link];
   const bool last = link == chunk.paths.size();
-  const uint32_t fixed = last ? 0 : traced.fixed;
-  for (uint32_t m = traced.first_move + std::max(skipped, fixed); m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  const uint32_t fixed = last ? 0 : chunk.links[link].fixed;
+  for (const TraceMove& move : chunk.MovesOf(link, std::max(skipped, fixed))) {
     if (last && move.z_from_mm != move.z_to_mm) break;
     if (move.in_print && !move.IsNothing(kLeastMoveMm)) moves_.push_back(&move);
   }

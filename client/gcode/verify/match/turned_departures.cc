@@ -39,9 +39,8 @@ StartOfLoop StartAt(const TraceChunk& chunk, const TracePath& path, uint32_t ent
 
 // The open move with which travel from the path begins, if it is so short; else nothing.
 const TraceMove* ShortMoveFrom(const TraceChunk& chunk, uint32_t link) {
-  const TraceLink& traced = chunk.links[link];
-  if (traced.first_move == traced.end_move) return nullptr;
-  const TraceMove& first = chunk.moves[traced.first_move];
+  if (chunk.MovesOf(link).empty()) return nullptr;
+  const TraceMove& first = chunk.MovesOf(link).front();
   const bool departs = first.kind == MoveKind::kTravel && first.open && first.in_print &&
                        first.length_mm() <= kLongestDepartureMm;
   return departs ? &first : nullptr;

@@ -218,10 +218,8 @@ class Matcher {
   bool OnlyGap(uint32_t path, uint32_t next) const {
     if (path == next) return true;
     if (path + 1 != next) return false;
-    const TraceLink& link = optimised_.links[next];
     double gap = 0;
-    for (uint32_t m = link.first_move; m < link.end_move; ++m) {
-      const TraceMove& move = optimised_.moves[m];
+    for (const TraceMove& move : optimised_.MovesOf(next)) {
       if (move.kind != MoveKind::kTravel || !move.open || move.z_from_mm != move.z_to_mm) {
         return false;
       }

@@ -43,7 +43,7 @@ bool LeadsAroundAWall(const LayerPair& layer, const TraceMove& before, const Tra
 // is said elsewhere (travel_heights.cc).
 bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
                   const TraceMove& behind) {
-  const double printed = is.moves[is.links[link].first_move].z_from_mm;
+  const double printed = is.MovesOf(link).front().z_from_mm;
   return is.paths[link].z_mm < printed - kOneHeightMm &&
          behind.z_from_mm < before.z_to_mm - kOneHeightMm;
 }
@@ -54,13 +54,11 @@ class Departures {
  public:
   Departures(const TraceChunk& was, uint32_t first_link, uint32_t end_link) {
     for (uint32_t link = first_link; link < end_link; ++link) {
-      const TraceLink& traced = was.links[link];
       double length = 0;
-      for (uint32_t m = traced.first_move; m < traced.end_move && length <= kLongestMm; ++m) {
-        const TraceMove& move = was.moves[m];
-        if (!move.sideways()) continue;
-        length += move.length_mm();
-        if (length <= kLongestMm) ends_.insert(DigestOfEnds(move.from, move.to));
+      for (const TraceMove& move : was.MovesOf(link)) {
+        if (move.sideways()) length += move.length_mm();
+        if (length > kLongestMm) break;
+        if (move.sideways()) ends_.insert(DigestOfEnds(move.from, move.to));
       }
     }
   }
@@ -95,11 +93,9 @@ std::optional<Departures> DeparturesTo(const LayerPair& layer) {
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
                const std::optional<Departures>& departures, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
-  const TraceLink& traced = is.links[link];
   const TraceMove* before = nullptr;
   // Up to an unknown line nothing changes: scripts.
-  for (uint32_t m = traced.first_move + std::max(skipped, traced.fixed); m < traced.end_move; ++m) {
-    const TraceMove& move = is.moves[m];
+  for (const TraceMove& move : is.MovesOf(link, std::max(skipped, is.links[link].fixed))) {
     if (!move.sideways()) continue;
     if (move.kind == MoveKind::kTravel && move.in_print && move.arc && !layer.IsKnown(move)) {
       findings.breaks.push_back(
@@ -129,12 +125,11 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
 
 // Travel of the original's layer that bends around an outer wall: one is enough.
 void ObserveDetour(const LayerPair& layer, Observations& seen) {
-  const TraceChunk& was = layer.was();
-  const uint32_t first = was.links[layer.first_path_was()].first_move;
-  const uint32_t end = was.links[layer.end_path_was()].first_move;
-  for (uint32_t m = first + 1; m < end; ++m) {
-    const TraceMove& before = was.moves[m - 1];
-    const TraceMove& move = was.moves[m];
+  const absl::Span<const TraceMove> moves =
+      layer.was().MovesOfLinks(layer.first_path_was(), layer.end_path_was());
+  for (size_t m = 1; m < moves.size(); ++m) {
+    const TraceMove& before = moves[m - 1];
+    const TraceMove& move = moves[m];
     if (!before.sideways() || !move.sideways() || !before.in_print) continue;
     const bool bends = BendOf(before, move) > kSamePointMm;
     if (!bends || !LeadsAroundAWall(layer, before, move)) continue;
@@ -144,23 +139,13 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
   }
 }
 
-// Of the first `moves` of link `link`.
-double LengthOf(const TraceChunk& chunk, uint32_t link, uint32_t moves) {
+// How many of the first of `moves` are no longer than `most_mm` together.
+uint32_t MovesWithin(absl::Span<const TraceMove> moves, double most_mm) {
   double length = 0;
-  const uint32_t first = chunk.links[link].first_move;
-  for (uint32_t m = first; m < first + moves; ++m) length += chunk.moves[m].length_mm();
-  return length;
-}
-
-// How many of the first `moves` of link `link` are no longer than that together.
-uint32_t MovesWithin(const TraceChunk& chunk, uint32_t link, uint32_t moves, double most_mm) {
-  const uint32_t first = chunk.links[link].first_move;
-  double length = 0;
-  for (uint32_t m = first; m < first + moves; ++m) {
-    length += chunk.moves[m].length_mm();
-    if (length > most_mm) return m - first;
-  }
-  return moves;
+  const auto behind = std::find_if(moves.begin(), moves.end(), [&](const TraceMove& move) {
+    return (length += move.length_mm()) > most_mm;
+  });
+  return static_cast<uint32_t>(behind - moves.begin());
 }
 
 // Of what goes along paths of the original, however fast.
@@ -168,7 +153,11 @@ double LongestAlong(const LayerPair& layer) {
   const Tails along(layer, true, true);
   double longest = 0;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    longest = std::max(longest, LengthOf(layer.was(), link, along.At(link)));
+    double length = 0;
+    for (const TraceMove& move : layer.was().MovesOf(link).first(along.At(link))) {
+      length += move.length_mm();
+    }
+    longest = std::max(longest, length);
   }
   return longest;
 }
@@ -202,7 +191,8 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     // The travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
     const double most = first ? std::max(longest, kAlongToLayerMm) : longest;
-    const uint32_t moves = MovesWithin(layer.is(), link, along.At(link), most + kOnPathMm);
+    const uint32_t moves =
+        MovesWithin(layer.is().MovesOf(link).first(along.At(link)), most + kOnPathMm);
     // How travel leaves a loop is another rule (leaving_paths.cc), there of the layer before.
     const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.LeadsAway(link);
     const uint32_t skipped = std::max({tails.At(link), moves, departs ? 1u : 0u});

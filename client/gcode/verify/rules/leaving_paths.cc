@@ -34,20 +34,11 @@ bool EndAlike(const LayerPair& layer, const Visit& visit) {
   return DistanceOf(was, is) < kSamePointMm;
 }
 
-// The first sideways move of the link; nothing if there is none.
-const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-    if (chunk.moves[m].sideways()) return &chunk.moves[m];
-  }
-  return nullptr;
-}
-
 // The moves with which travel from the path begins along it, however fast.
 absl::Span<const TraceMove> MovesAlong(const TraceChunk& chunk, uint32_t path,
                                        absl::Span<const Piece> pieces) {
-  return absl::MakeConstSpan(chunk.moves)
-      .subspan(chunk.links[path + 1].first_move,
-               LayerPair::TailMoves(chunk, path, pieces, /*any_speed=*/true));
+  return chunk.MovesOf(path + 1).first(
+      LayerPair::TailMoves(chunk, path, pieces, /*any_speed=*/true));
 }
 
 bool IsSideways(const TraceMove& move) { return move.sideways(); }
@@ -64,13 +55,14 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
     const auto along = MovesAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
     return std::none_of(along.begin(), along.end(), IsSideways);
   }
-  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
-  return first == nullptr || DistanceOf(departs->to, first->to) > kSamePointMm;
+  const absl::Span<const TraceMove> had = layer.was().MovesOf(visit.path + 1);
+  const auto first = std::find_if(had.begin(), had.end(), IsSideways);
+  return first == had.end() || DistanceOf(departs->to, first->to) > kSamePointMm;
 }
 
 bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
-  const TraceLink& traced = chunk.links[link];
-  return traced.first_move < traced.end_move && Retracts(chunk.moves[traced.first_move]);
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  return !moves.empty() && Retracts(moves.front());
 }
 
 // How far off the end of the path travel retracts that an open nozzle begins; nothing if it does
@@ -78,8 +70,7 @@ bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
 std::optional<double> RetractsAwayBy(const TraceChunk& chunk, uint32_t link) {
   double mm = 0;
   const Point end = chunk.EndOf(chunk.paths[link - 1]);
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(link)) {
     if (Retracts(move)) return mm;
     if (!move.sideways()) continue;
     if (move.kind != MoveKind::kTravel || !move.in_print) return std::nullopt;
@@ -128,13 +119,12 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepa
   }
   if (const double later_mm = as_sliced ? RetractsLaterBy(layer, visit) : 0; later_mm > 0) {
     findings.breaks.push_back(
-        {VerifyRule::kPathEnds, line_was, is.moves[is.links[link_is].first_move].line,
-         layer.index(),
+        {VerifyRule::kPathEnds, line_was, is.MovesOf(link_is).front().line, layer.index(),
          absl::StrFormat("retracts %.2f mm farther behind the path than the original", later_mm)});
     return;
   }
   if (was == nullptr || !RetractsAtOnce(is, link_is)) return;
-  const uint32_t line_is = is.moves[is.links[link_is].first_move].line;
+  const uint32_t line_is = is.MovesOf(link_is).front().line;
   const Finding lost{VerifyRule::kPathEnds, line_was, line_is, layer.index(),
                      "retracts at the end of the path; the original leaves it before"};
   if (alike && LeadAlike(layer, visit)) {
@@ -174,21 +164,19 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   constexpr double kLeastMm = 0.1;
   const TraceChunk& was = layer.was();
   const absl::Span<const Piece> pieces = layer.PiecesOf(path);
-  const TraceLink& link = was.links[path + 1];
+  const absl::Span<const TraceMove> moves = was.MovesOf(path + 1);
   const Point end = was.EndOf(was.paths[path]);
   if (was.paths[path].size() < 3 || DistanceOf(was.paths[path].start, end) > kOnPathMm)
     return nullptr;
-  if (link.end_move - link.first_move < 2) return nullptr;
-  const TraceMove& first = was.moves[link.first_move];
+  if (moves.size() < 2) return nullptr;
+  const TraceMove& first = moves.front();
   const double length = first.length_mm();
   const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
   if (!open || length <= kLeastMm || length > kLooseMm) return nullptr;
   if (DistanceOf(PointAlong(pieces, length), first.to) > kOnPathMm) return nullptr;
   // A straight move off a small loop ends there too, but leads across it.
   if (GoesOnMm(was, path, pieces) <= length - kOnPathMm) return nullptr;
-  const TraceMove* moves = was.moves.data();
-  const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move, IsSideways);
-  return leads_on ? &first : nullptr;
+  return std::any_of(moves.begin() + 1, moves.end(), IsSideways) ? &first : nullptr;
 }
 
 // Travel that goes on along the loop that it leaves does so wherever that ends.
@@ -199,9 +187,8 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
   const TraceChunk& is = layer.is();
   const double mm = GoesOnMm(is, visit.last_path, layer.PiecesOf(visit.path));
   if (mm > had->length_mm() - kOnPathMm) return;
-  const TraceLink& link = is.links[visit.last_path + 1];
-  const uint32_t line = link.first_move < link.end_move ? is.moves[link.first_move].line
-                                                        : is.segments[visit.last_segment].line;
+  const absl::Span<const TraceMove> moves = is.MovesOf(visit.last_path + 1);
+  const uint32_t line = moves.empty() ? is.segments[visit.last_segment].line : moves.front().line;
   findings.breaks.push_back(
       {VerifyRule::kPathEnds, had->line, line, layer.index(),
        absl::StrFormat("goes on along the loop for %.2f mm, but for %.2f mm in the original", mm,

@@ -66,11 +66,11 @@ void Obstacles::Print(const TraceChunk& was, uint32_t first_path, uint32_t end_p
 }
 
 void Obstacles::Visit(const TraceChunk& was, uint32_t link) {
-  for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
+  for (const TraceMove& move : was.MovesOf(link)) {
     if (limit_.Ended()) return;
-    if (!Moves(was.moves[m])) continue;
-    moves_was_.insert(EndsOf(was.moves[m]));
-    ForEachPiece(was.moves[m], [this](Point a, double z_a, Point b, double z_b) {
+    if (!Moves(move)) continue;
+    moves_was_.insert(EndsOf(move));
+    ForEachPiece(move, [this](Point a, double z_a, Point b, double z_b) {
       tip_.Visit(a, z_a, b, z_b);
       head_.Visit(a, z_a, b, z_b);
     });
@@ -80,9 +80,8 @@ void Obstacles::Visit(const TraceChunk& was, uint32_t link) {
 void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
                           std::vector<Finding>& breaks) {
   std::optional<HeightGrid::Hit> hit;
-  for (uint32_t m = is.links[link].first_move; m < is.links[link].end_move; ++m) {
+  for (const TraceMove& move : is.MovesOf(link)) {
     if (limit_.Ended()) return;
-    const TraceMove& move = is.moves[m];
     // What the original does in this layer too needs no proof.
     if (!Moves(move) || moves_was_.contains(EndsOf(move))) continue;
     ForEachPiece(move, [&](Point a, double z_a, Point b, double z_b) {
@@ -107,10 +106,10 @@ void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
 // Whether anything stands above a move of the links.
 bool Obstacles::AnyAbove(const TraceChunk& chunk, uint32_t first_link, uint32_t end_link) const {
   const double least_mm = tip_.highest_mm() - kLevelMm;
-  const auto begin = chunk.moves.begin();
-  return std::any_of(
-      begin + chunk.links[first_link].first_move, begin + chunk.links[end_link - 1].end_move,
-      [least_mm](const TraceMove& m) { return std::min(m.z_from_mm, m.z_to_mm) < least_mm; });
+  const absl::Span<const TraceMove> moves = chunk.MovesOfLinks(first_link, end_link);
+  return std::any_of(moves.begin(), moves.end(), [least_mm](const TraceMove& m) {
+    return std::min(m.z_from_mm, m.z_to_mm) < least_mm;
+  });
 }
 
 void Obstacles::CheckLayer(const TraceChunk& was, const TraceChunk& is, size_t layer,

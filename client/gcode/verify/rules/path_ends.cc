@@ -28,10 +28,8 @@ struct Tail {
 Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
             absl::Span<const Piece> pieces, double most_mm = HUGE_VAL) {
   Tail tail;
-  const uint32_t first = chunk.links[path + 1].first_move;
   const uint32_t n = LayerPair::TailMoves(chunk, path, pieces);
-  for (uint32_t m = first; m < first + n; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(path + 1).first(n)) {
     if (tail.length_mm + move.length_mm() > most_mm) break;
     tail.length_mm += move.length_mm();
     tail.end = move.to;
@@ -58,9 +56,8 @@ bool GoesBeyond(const TraceChunk& chunk, uint32_t path, const Tail& tail) {
 // deposit to nothing, and where travel is as fast as printing.
 bool LeadsOn(const TraceChunk& chunk, uint32_t path) {
   if (path + 1 >= chunk.paths.size()) return false;
-  const TraceLink& link = chunk.links[path + 1];
-  const auto begin = chunk.moves.begin();
-  return std::all_of(begin + link.first_move, begin + link.end_move, [&](const TraceMove& move) {
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
+  return std::all_of(moves.begin(), moves.end(), [&](const TraceMove& move) {
     return move.kind == MoveKind::kTravel && move.open && move.feed <= chunk.paths[path].feed;
   });
 }
@@ -70,13 +67,12 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path) {
 // makes it nothing too.
 template <typename Known>
 const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known& known) {
-  const TraceLink& link = chunk.links[path + 1];
-  if (link.scripted) return nullptr;
+  if (chunk.links[path + 1].scripted) return nullptr;
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
   const Point end = chunk.EndOf(chunk.paths[path]);
   bool left = false;
   bool all_known = true;
-  for (uint32_t m = link.first_move; m + 1 < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : moves.first(moves.size() - (moves.empty() ? 0 : 1))) {
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) return nullptr;
     all_known &= known(move);
     const double off = DistanceOf(move.to, end);

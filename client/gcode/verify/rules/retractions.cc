@@ -30,8 +30,7 @@ void ObservePrimes(const LayerPair& layer, LayerFindings& findings) {
     for (uint32_t link = first; link < end; ++link) {
       Micro surplus = 0;
       uint32_t line = 0;  // of the first move of filament
-      for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-        const TraceMove& move = chunk.moves[m];
+      for (const TraceMove& move : chunk.MovesOf(link)) {
         if (!move.in_print || move.filament == 0) continue;
         surplus += move.filament;
         if (line == 0) line = move.line;

@@ -13,9 +13,7 @@ bool ChangesHeight(const TraceMove& move) { return move.z_to_mm != move.z_from_m
 // What follows the last path, from where the head first leaves its height: what stands before it
 // belongs to the path, and may be that of another one.
 absl::Span<const TraceMove> Leaving(const TraceChunk& chunk) {
-  const TraceLink& link = chunk.links.back();
-  const absl::Span<const TraceMove> moves =
-      absl::MakeConstSpan(chunk.moves).subspan(link.first_move, link.end_move - link.first_move);
+  const absl::Span<const TraceMove> moves = chunk.MovesOfLast();
   const auto first = std::find_if(moves.begin(), moves.end(), ChangesHeight);
   return moves.subspan(static_cast<size_t>(first - moves.begin()));
 }
@@ -30,8 +28,7 @@ bool DoTheSame(const TraceMove& was, const TraceMove& is) {
 
 // The moves between a path and a line that is not known, before which the path stays as it is.
 absl::Span<const TraceMove> FixedMoves(const TraceChunk& chunk, uint32_t path) {
-  const TraceLink& link = chunk.links[path];
-  return absl::MakeConstSpan(chunk.moves).subspan(link.first_move, link.fixed);
+  return chunk.MovesOf(path).first(chunk.links[path].fixed);
 }
 
 bool AreEqual(const TraceMove& one, const TraceMove& other) {

@@ -38,10 +38,8 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
-    const TraceLink& traced = chunk.links[link];
-    if (traced.scripted) continue;
-    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
-      const TraceMove& move = chunk.moves[m];
+    if (chunk.links[link].scripted) continue;
+    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
       if (!move.in_print) continue;
       Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
     }
@@ -53,13 +51,10 @@ using LongestTravels = absl::flat_hash_map<uint64_t, float>;  // by acceleration
 LongestTravels LongestOf(const LayerPair& layer) {
   LongestTravels longest;
   const TraceChunk& chunk = layer.was();
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-      const TraceMove& move = chunk.moves[m];
-      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
-      float& of_one = longest[move.acceleration];
-      of_one = std::max(of_one, static_cast<float>(move.length_mm()));
-    }
+  for (const TraceMove& move : chunk.MovesOfLinks(layer.first_path_was(), layer.end_path_was())) {
+    if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+    float& of_one = longest[move.acceleration];
+    of_one = std::max(of_one, static_cast<float>(move.length_mm()));
   }
   return longest;
 }
@@ -71,9 +66,7 @@ bool AcceleratesByPath(const LayerPair& layer) {
   const Tails tails(layer, true);
   absl::flat_hash_map<uint64_t, uint64_t> of_path;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    const TraceLink& traced = chunk.links[link];
-    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
-      const TraceMove& move = chunk.moves[m];
+    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
       if (move.kind != MoveKind::kTravel || !move.in_print) continue;
       const auto known = of_path.try_emplace(chunk.paths[link].acceleration, move.acceleration);
       if (known.first->second != move.acceleration) return false;
@@ -109,11 +102,9 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
-    const TraceLink& traced = chunk.links[link];
     // At unknown lines every step is that of the original there: see CheckScriptedTravels.
-    if (traced.scripted) continue;
-    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
-      const TraceMove& move = chunk.moves[m];
+    if (chunk.links[link].scripted) continue;
+    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
       if (!IsNew(layer, link, move) || move.firmware) continue;
       Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
       if (IsTooLong(move, longest)) {
@@ -135,16 +126,11 @@ void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
 void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  const TraceLink& last_was = was.links.back();
   absl::flat_hash_set<uint64_t> accelerations;
   const auto key = [](const TraceMove& move) { return Mix(KindOf(move), move.acceleration); };
-  for (uint32_t m = last_was.first_move; m < last_was.end_move; ++m) {
-    accelerations.insert(key(was.moves[m]));
-  }
-  for (uint32_t m = is.links.back().first_move; m < is.links.back().end_move; ++m) {
-    const TraceMove& move = is.moves[m];
-    if (move.firmware || layer.IsKnown(move)) continue;
-    if (accelerations.contains(key(move))) continue;
+  for (const TraceMove& move : was.MovesOfLast()) accelerations.insert(key(move));
+  for (const TraceMove& move : is.MovesOfLast()) {
+    if (move.firmware || layer.IsKnown(move) || accelerations.contains(key(move))) continue;
     Note(findings.is.accelerations[KindOf(move)], move.acceleration, move, layer.index());
   }
 }

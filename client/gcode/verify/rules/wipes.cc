@@ -89,10 +89,8 @@ bool TurnsBackBetween(const TraceMove& before, const TraceMove& move,
 std::vector<const TraceMove*> WipeMoves(const LayerPair& layer, const TraceChunk& chunk,
                                         uint32_t path) {
   std::vector<const TraceMove*> moves;
-  const TraceLink& link = chunk.links[path + 1];
   bool primed = false;
-  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(path + 1)) {
     primed |= move.kind == MoveKind::kPriming;
     if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
     if (!primed || !layer.IsKnown(move)) moves.push_back(&move);
@@ -207,9 +205,8 @@ Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
 }
 
 bool PullsBack(const TraceChunk& chunk, uint32_t link) {
-  const TraceMove* moves = chunk.moves.data();
-  return std::any_of(moves + chunk.links[link].first_move, moves + chunk.links[link].end_move,
-                     Retracts);
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  return std::any_of(moves.begin(), moves.end(), Retracts);
 }
 
 // Whether a wipe that the original has may be missing in `link` of the other file. Where the
@@ -246,10 +243,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
   for (const Visit& visit : layer.visits()) {
     if (layer.Ended()) return;
     const Wipe& had = wiped[visit.path - layer.first_path_was()];
-    if (!any && layer.is().links[visit.last_path + 1].first_move ==
-                    layer.is().links[visit.last_path + 1].end_move) {
-      continue;
-    }
+    if (!any && layer.is().MovesOf(visit.last_path + 1).empty()) continue;
     // Else what follows is of the path to which the other file goes on.
     const bool ends = layer.EndsPath(visit);
     Wipe wipe;

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/verify/machine/verify_machine.h"
 #include "client/gcode/verify/trace/path_class.h"
 #include "engine/model/point.h"
@@ -200,6 +201,23 @@ struct TraceChunk {
   }
   Point EndOf(const TracePath& path) const { return segments[path.end_segment - 1].end; }
   uint32_t LineOf(const TracePath& path) const { return segments[path.first_segment].line; }
+
+  // The moves of links `first` to `end` - 1.
+  absl::Span<const TraceMove> MovesOfLinks(uint32_t first, uint32_t end) const {
+    return absl::MakeConstSpan(moves)
+        .first(links[end - 1].end_move)
+        .subspan(links[first].first_move);
+  }
+
+  // Those of one link, without its first `skipped` ones. REQUIRES: it has as many.
+  absl::Span<const TraceMove> MovesOf(uint32_t link, uint32_t skipped = 0) const {
+    return MovesOfLinks(link, link + 1).subspan(skipped);
+  }
+
+  // What follows the last path.
+  absl::Span<const TraceMove> MovesOfLast() const {
+    return MovesOf(static_cast<uint32_t>(paths.size()));
+  }
 };
 
 }  // namespace traverse::gcode

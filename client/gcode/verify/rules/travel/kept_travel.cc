@@ -29,8 +29,7 @@ bool GoesOn(const TraceMove& before, const TraceMove& move) {
 
 std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
   std::vector<TraceMove> moves;
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(link)) {
     if (move.IsNothing(kSamePointMm)) continue;
     if (!moves.empty() && GoesOn(moves.back(), move)) {
       moves.back().to = move.to;

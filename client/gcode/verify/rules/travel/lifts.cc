@@ -137,16 +137,15 @@ class LinkProfiles {
         seen_(seen) {}
 
   void Append() {
-    if (traced_.first_move == traced_.end_move) return;
-    const double z_before = chunk_.moves[traced_.first_move].z_from_mm;
+    const absl::Span<const TraceMove> moves = chunk_.MovesOf(link_);
+    if (moves.empty()) return;
+    const double z_before = moves.front().z_from_mm;
     level_ = std::abs(z_before - to_mm_) <= kOneHeightMm;
-    for (uint32_t m = traced_.first_move; m < traced_.end_move; ++m) {
-      const TraceMove& move = chunk_.moves[m];
+    for (const TraceMove& move : moves) {
       retracted_ |= move.kind == MoveKind::kTravel && move.in_print && !move.open;
     }
     Begin(z_before);
-    for (uint32_t m = traced_.first_move; m < traced_.end_move; ++m) {
-      const TraceMove& move = chunk_.moves[m];
+    for (const TraceMove& move : moves) {
       if (move.kind == MoveKind::kPriming) {
         End();
         Begin(move.z_to_mm);
@@ -219,8 +218,8 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
   // The travel to the first path shows nothing about travel between layers.
-  const bool in_print =
-      traced.first_move == traced.end_move || chunk.moves[traced.first_move].in_print;
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  const bool in_print = moves.empty() || moves.front().in_print;
   if (traced.first || traced.scripted || !in_print) return;
   LinkProfiles(layer, chunk, link, only_new, seen).Append();
 }

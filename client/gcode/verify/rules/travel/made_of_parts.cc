@@ -25,18 +25,15 @@ using Parts = std::vector<LinkPart>;
 // Of all moves of a link, one after the other.
 uint64_t DigestOf(const TraceChunk& chunk, uint32_t link) {
   uint64_t digest = 0;
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-    digest = Mix(digest, chunk.moves[m].identity);
-  }
+  for (const TraceMove& move : chunk.MovesOf(link)) digest = Mix(digest, move.identity);
   return digest;
 }
 
 // The gap of a loop that begins elsewhere belongs to the loop, and is crossed as fast as that, or
 // what follows it, is printed.
 bool CrossesGap(const TraceChunk& chunk, uint32_t link) {
-  const TraceLink& traced = chunk.links[link];
-  if (link == 0 || traced.first_move == traced.end_move) return false;
-  const TraceMove& move = chunk.moves[traced.first_move];
+  if (link == 0 || chunk.MovesOf(link).empty()) return false;
+  const TraceMove& move = chunk.MovesOf(link).front();
   const bool slow = move.feed == chunk.paths[link - 1].feed ||
                     (link < chunk.paths.size() && move.feed == chunk.paths[link].feed);
   return move.kind == MoveKind::kTravel && move.open && slow &&
@@ -100,7 +97,7 @@ void CheckLink(const LayerPair& layer, const LayerParts& had, const LinkCutter& 
   const bool none =
       std::any_of(missing.begin(), missing.end(), [](const Parts& parts) { return parts.empty(); });
   if (none) return;
-  const uint32_t line = layer.is().moves[layer.is().links[link].first_move].line;
+  const uint32_t line = layer.is().MovesOf(link).front().line;
   Parts own = cutter.Parts();
   std::erase_if(own, [&had](const LinkPart& part) { return had.all.Has(part); });
   const std::string what = own.empty() ? "" : NameOf(own[0]);
@@ -115,9 +112,8 @@ void ObserveParts(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
     had.whole.insert(DigestOf(layer.was(), link));
-    const uint32_t first = layer.was().links[link].first_move;
-    for (uint32_t m = first; m < first + was_tails.At(link); ++m) {
-      had.tail_feeds.insert(layer.was().moves[m].feed);
+    for (const TraceMove& move : layer.was().MovesOf(link).first(was_tails.At(link))) {
+      had.tail_feeds.insert(move.feed);
     }
     const LinkCutter cutter(layer.was(), link, was_tails.At(link));
     const bool level = cutter.level() && !layer.was().links[link].new_layer;

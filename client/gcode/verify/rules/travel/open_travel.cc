@@ -25,13 +25,12 @@ std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
   const Tails tails(layer, original, true);
   std::vector<OpenTravel> travels;
   for (uint32_t link = first; link < end && !layer.Ended(); ++link) {
-    const TraceLink& traced = chunk.links[link];
-    if (traced.first_move == traced.end_move) continue;
+    const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+    if (moves.empty()) continue;
     const double length = layer.OpenLengthOverWalls(chunk, link, tails.At(link));
     if (length <= 0) continue;
-    OpenTravel travel{length, chunk.moves[traced.first_move].line, true};
-    for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-      const TraceMove& move = chunk.moves[m];
+    OpenTravel travel{length, moves.front().line, true};
+    for (const TraceMove& move : moves) {
       if (move.kind != MoveKind::kTravel || !move.open || layer.IsKnown(move)) continue;
       if (travel.known) travel.line = move.line;
       travel.known = false;

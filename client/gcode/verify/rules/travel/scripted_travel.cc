@@ -34,9 +34,7 @@ struct TravelStep {
 // What the link to `path` does behind its last unknown line.
 std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path) {
   std::vector<TravelStep> steps;
-  const TraceLink& link = chunk.links[path];
-  for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(path, chunk.links[path].fixed)) {
     if (move.IsNothing(kLeastMoveMm)) continue;
     const bool wipes = move.kind == MoveKind::kWipe;
     const Micro filament = wipes ? 0 : move.filament;
@@ -62,11 +60,9 @@ void LeaveOutSinking(const TracePath& path, std::vector<TravelStep>& steps) {
 // How much farther the travel behind unknown lines leads than straight to its path. Wipes lead
 // where their paths do.
 double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
-  const TraceLink& link = chunk.links[path];
   double length = 0;
   const TraceMove* first = nullptr;
-  for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(path, chunk.links[path].fixed)) {
     if (!move.sideways() || move.kind == MoveKind::kWipe) continue;
     if (first == nullptr) first = &move;
     length += move.length_mm();

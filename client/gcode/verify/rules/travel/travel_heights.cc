@@ -23,10 +23,9 @@ TravelRise RiseOf(double from, double to) {
 
 // Travel from the start script is no example for other travel: it is only no higher, and no lower,
 // than it was.
-void ObserveFirstTravel(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
+void ObserveFirstTravel(const LayerPair& layer, absl::Span<const TraceMove> moves,
                         Observations& seen) {
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : moves) {
     if (!move.in_print) continue;
     const ExtremePoint point{move.z_to_mm, move.line, layer.index()};
     ExtremePoint& highest = seen.first_highest;
@@ -74,7 +73,7 @@ class LinkHeights {
 
 // How many moves at the beginning of `link`, which ends at another height, go on along the path.
 uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
-  const TraceMove& first = chunk.moves[chunk.links[link].first_move];
+  const TraceMove& first = chunk.MovesOf(link).front();
   if (link == 0 || RiseOf(first.z_from_mm, chunk.paths[link].z_mm) == TravelRise::kLevel) return 0;
   std::vector<Piece> pieces;
   AppendPieces(chunk, link - 1, pieces);
@@ -83,18 +82,14 @@ uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
 
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
-  const TraceLink& traced = chunk.links[link];
-  if (traced.first_move == traced.end_move) return;
-  if (!chunk.moves[traced.first_move].in_print) {
-    return ObserveFirstTravel(layer, chunk, traced, seen);
-  }
-  LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
-                      layer.index(), seen);
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  if (moves.empty()) return;
+  if (!moves.front().in_print) return ObserveFirstTravel(layer, moves, seen);
+  LinkHeights heights(moves.front().z_from_mm, chunk.paths[link].z_mm, layer.index(), seen);
   // A new departure, or tail, is as high as the path before; those of the original are examples.
   const TraceMove* departure = only_new ? DepartureOf(chunk, link) : nullptr;
   const uint32_t tail = only_new ? TailOf(chunk, link) : 0;
-  for (uint32_t m = traced.first_move + tail; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : moves.subspan(tail)) {
     if (only_new && layer.IsKnown(move)) continue;
     if (&move != departure) heights.NoteDepth(move);
   }

@@ -19,14 +19,14 @@ constexpr float kWindingFactor = 3.0f;
 // The move with which the head goes down to a path that lies lower than the one before: it has to
 // do so where nothing stands in its way (travel_heights.cc). Nothing if the path does not.
 const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
-  const TraceLink& traced = chunk.links[link];
-  if (traced.first_move == traced.end_move || link >= chunk.paths.size()) return nullptr;
-  const double printed = chunk.moves[traced.first_move].z_from_mm - kOneHeightMm;
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  if (moves.empty()) return nullptr;
+  const double printed = moves.front().z_from_mm - kOneHeightMm;
   if (chunk.paths[link].z_mm >= printed) return nullptr;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    if (chunk.moves[m].z_to_mm < printed) return &chunk.moves[m];
-  }
-  return nullptr;
+  const auto sink = std::find_if(moves.begin(), moves.end(), [printed](const TraceMove& move) {
+    return move.z_to_mm < printed;
+  });
+  return sink == moves.end() ? nullptr : &*sink;
 }
 
 // The travel in `link`; of length 0 if there is none, or if only new moves count and none is new.
@@ -40,8 +40,7 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
   const TraceMove* last = nullptr;
   const TraceMove* sink = SinkOf(chunk, link);
   const TraceMove* departure = DepartureOf(chunk, link);  // retracts right behind it
-  for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : chunk.MovesOf(link, skipped)) {
     travel.retracts |= Retracts(move);
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
