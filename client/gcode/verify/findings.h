@@ -10,58 +10,36 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
+#include "client/gcode/verify/match/layer_pair.h"
 #include "client/gcode/verify/match/link_parts.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
 
+// A line of a file, and its layer.
+struct Place {
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Place(uint32_t of_line = 0, int64_t of_layer = -1) : line(of_line), layer(of_layer) {}
+
+  uint32_t line;  // 0: none
+  int64_t layer;  // -1: not known
+};
+
 // A break in a rule's words; names of files and rule are added later.
 struct Finding {
   VerifyRule rule = VerifyRule::kSamePrint;
   uint32_t original_line = 0;
-  uint32_t optimised_line = 0;
-  int64_t layer = -1;
-  std::string what;
+  Place at = {};  // in the optimised file
+  std::string what = {};
   uint32_t before_line = 0;  // of the optimised file: what has to come before that; 0: nothing
 };
 
-// Where something was observed.
+// Where moves of one acceleration were seen.
 struct Seen {
-  struct Place {
-    uint32_t line = 0;
-    int64_t layer = -1;
-  };
-  uint32_t line = 0;
-  int64_t layer = -1;
-  float longest_mm = 0;  // the longest of sideways moves
-
-  // The next places: so many of each layer, and VerifyReport::kMostBreaks of all.
-  std::vector<Place> others = {};
-  static constexpr size_t kMostOfALayer = 64;
+  std::vector<Place> places;  // not all of a layer, and VerifyReport::kMostBreaks or a few more
+  float longest_mm = 0;       // the longest of sideways moves
 };
-
-// Notes in a map of one layer that `key` was observed at `line`.
-template <typename Map, typename Key>
-Seen& NoteSeen(Map& map, const Key& key, uint32_t line, int64_t layer) {
-  const auto [found, added] = map.try_emplace(key, Seen{line, layer});
-  Seen& seen = found->second;
-  if (!added && seen.others.size() < Seen::kMostOfALayer) seen.others.push_back({line, layer});
-  return seen;
-}
-
-// Adds `finding` for each place of `seen`.
-void AddAt(const Seen& seen, Finding finding, std::vector<Finding>& breaks);
-
-// The first line of all of `map`; 0 if it is empty.
-template <typename Map>
-uint32_t FirstLineOf(const Map& map) {
-  uint32_t line = 0;
-  for (const auto& [key, seen] : map) {
-    if (line == 0 || seen.line < line) line = seen.line;
-  }
-  return line;
-}
 
 // A travel move between paths, with its heights.
 struct TravelProfile {
@@ -71,8 +49,7 @@ struct TravelProfile {
     float to_mm = 0;
     float length_mm = 0;
   };
-  uint32_t line = 0;
-  int64_t layer = -1;
+  Place at;
   uint32_t first = 0;  // in LiftLog::pieces
   uint32_t end = 0;
   uint64_t ends = 0;  // a digest of its two end points
@@ -89,80 +66,58 @@ struct LiftLog {
   void Append(const LiftLog& other);
 };
 
-// How low a travel move goes compared with the heights that it connects.
+// Which way the heights lead that travel connects.
 enum class TravelRise : uint8_t { kLevel, kUp, kDown, kCount };
 
-struct LowestTravel {
-  float above_mm = 0;  // the higher of the two heights; less than 0: below it
-  uint32_t line = 0;
-  int64_t layer = -1;
+// The most that the travel between two paths does of something.
+struct TravelExtreme {
+  float mm = 0;
+  Place at;
   TravelRise rise = TravelRise::kLevel;
-};
-
-// How far a move leads sideways while descending.
-struct Descent {
-  float length_mm = 0;
-  uint32_t line = 0;
-  int64_t layer = -1;
-  TravelRise rise = TravelRise::kLevel;  // of the travel that it belongs to
 };
 
 // The travel between two paths.
 struct TravelLength {
   float length_mm = 0;
-  float open_mm = 0;        // the part of it without a retraction
-  float excess_mm = 0;      // beyond the straight line
-  bool turns_back = false;  // one of its moves leads back to where the one before began
-  bool to_layer = false;    // unretracted, from one layer to the next
-  bool retracts = false;    // though maybe not before its first move
-  // Retracted all the way, from one layer to the next.
-  bool retracted_to_layer = false;
+  float open_mm = 0;            // the part of it without a retraction
+  float excess_mm = 0;          // beyond the straight line
+  bool turns_back = false;      // one of its moves leads back to where the one before began
+  bool to_layer = false;        // from another one
+  bool retracts = false;        // though maybe not before its first move
   bool was_retracted = false;   // the original's travel to this layer is retracted all the way
   bool was_retracting = false;  // or on the way
-  uint32_t line = 0;
-  int64_t layer = -1;
+  Place at;
+
+  // From one layer to the next, all the way.
+  bool retracted_to_layer() const { return to_layer && length_mm > 0 && open_mm == 0; }
 };
 
-// Heights above the layer in um, of one kind of lift.
-struct LiftHeights {
-  absl::flat_hash_map<int64_t, Seen> level;  // between two paths of one height
-  absl::flat_hash_map<int64_t, Seen> other;
-
-  absl::flat_hash_map<int64_t, Seen>& Of(bool is_level) { return is_level ? level : other; }
-  const absl::flat_hash_map<int64_t, Seen>& Of(bool is_level) const {
-    return is_level ? level : other;
-  }
-
-  // Whether one of them is `um`. Lifts between paths of one height are compared with their like, if
-  // there are any.
-  bool Have(int64_t um, bool is_level) const;
-
-  // Where the first of them is that others are compared with; 0 if there is none.
-  uint32_t FirstLine() const { return FirstLineOf(Of(!level.empty())); }
+// Heights above the layer that moves state.
+struct StatedHeights {
+  absl::flat_hash_set<int64_t> um;
+  uint32_t first_line = 0;  // the first that states one; 0: none
 };
 
 // The height that a move states, and the slope on which it reaches it; 0: it does not rise.
 struct StatedHeight {
   int64_t um = 0;
-  int64_t slope = 0;  // um in 10 mm
-  bool level = false;
-  uint32_t line = 0;
-  int64_t layer = -1;
+  int64_t slope = 0;   // um in 10 mm
+  bool level = false;  // between two paths of one height
+  Place at;
 };
 
 // By how much primes of one file push more than was retracted.
 struct PrimeBalance {
   struct Odd {
     Micro surplus = 0;
-    uint32_t line = 0;
-    int64_t layer = -1;
+    Place at;
   };
   int64_t links = 0;  // that return all but what rounding takes
   Micro surplus = 0;  // of these together
   Odd most;
   Odd least;
 
-  void Add(Micro surplus_of_link, uint32_t line, int64_t of_layer);
+  void Add(Micro surplus_of_link, Place at);
   void Append(const PrimeBalance& other);
 };
 
@@ -170,43 +125,42 @@ struct PrimeBalance {
 struct UnprovenLink {
   std::vector<std::vector<LinkPart>> missing;  // in its layer: one list for each way to cut it
   std::string what;                            // for people
-  uint32_t line = 0;
-  int64_t layer = -1;
+  Place at;
 };
 
-struct WipeDeviation {
+// A wipe, and how it follows its path.
+struct Wipe {
   float off_mm = 0;     // at the ends of its moves
   float astray_mm = 0;  // halfway
-  float turned_mm = 0;  // by how much an arc of it would lie nearer the other way
-  float pull = 0;       // filament retracted per mm
-  float steepest = 0;   // the same for its longer moves, one by one; the most
-  float uneven_mm = 0;  // by how much, at some point, its filament is off an even rate
+  float turned_mm = 0;  // by how much an arc of it would lie nearer to the path the other way
   float length_mm = 0;
+  float pulled_mm = 0;      // filament
+  float steepest = 0;       // the most per mm of one of its longer moves
+  float uneven_mm = 0;      // by how much, at some point, its filament is off an even rate
   bool turns_back = false;  // somewhere where its path does not
-  uint32_t line = 0;
-  uint32_t original_line = 0;
-  int64_t layer = -1;
+  bool known = true;        // the original has all its moves in this layer
+  uint32_t path_line = 0;   // where its path begins in the original
+  Place at;                 // line 0: none
+
+  float pull() const { return pulled_mm / length_mm; }
 };
 
 // A travel move with an acceleration that only shorter ones of its layer have.
 struct LongTravel {
   uint64_t acceleration = 0;
   float length_mm = 0;
-  uint32_t line = 0;
-  int64_t layer = -1;
+  Place at;
 };
 
 // The highest or the lowest point of moves, above the bed.
 struct ExtremePoint {
   double z_mm = 0;
-  uint32_t line = 0;  // 0: there is no such move
-  int64_t layer = -1;
+  Place at;  // line 0: there is no such move
 };
 
 // A bend of travel that leads around an outer wall.
 struct Detour {
-  uint32_t line = 0;
-  int64_t layer = -1;
+  Place at;
   float excess_mm = 0;
 };
 
@@ -217,13 +171,14 @@ struct Observations {
   KnownParts parts;
   std::vector<UnprovenLink> new_links;  // with parts that their layer does not have
   PrimeBalance primes;
-  LiftHeights heights;                  // of moves that state Z
+  StatedHeights level_heights;          // by moves between two paths of one height
+  StatedHeights other_heights;          // by others
   absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way
   std::vector<StatedHeight> stated;     // by the other file's moves
   ExtremePoint first_highest;           // of the travel from the start script
   ExtremePoint first_lowest;
-  std::vector<LowestTravel> lowest;  // travel that goes lower than what it connects
-  std::vector<Descent> descents;     // the longest of each travel
+  std::vector<TravelExtreme> lowest;    // above the higher of the heights it connects, below 0
+  std::vector<TravelExtreme> descents;  // how far it leads sideways while descending
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file
   std::vector<TravelLength> travel_lengths;             // the greatest of each layer
   std::vector<TravelLength> travels_to_layers;
@@ -235,15 +190,17 @@ struct Observations {
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
   LiftLog lifts;
-  std::vector<WipeDeviation> wipes;
+  std::vector<Wipe> wipes;
 
   void Append(const Observations& other);
 };
 
 struct LayerFindings {
-  std::vector<Finding> breaks;
-  Observations was;  // everything that the original does
-  Observations is;   // what the other file does differently
+  std::vector<Finding> breaks;  // in this layer, whatever layer they name
+  Observations was;             // everything that the original does
+  Observations is;              // what the other file does differently
+
+  Observations& Of(const LayerSide& side) { return side.original ? was : is; }
 };
 
 }  // namespace traverse::gcode

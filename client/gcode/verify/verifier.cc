@@ -189,8 +189,8 @@ void Verifier::CheckLabels(size_t first, size_t end) {
 
 void Verifier::CheckLabel(const Section& was, const Section& is) {
   const auto add = [&](VerifyRule rule, const char* what) {
-    findings_.push_back({rule, static_cast<uint32_t>(was.last_line),
-                         static_cast<uint32_t>(is.last_line), -1, what});
+    findings_.push_back(
+        {rule, static_cast<uint32_t>(was.last_line), static_cast<uint32_t>(is.last_line), what});
   };
   if (was.lift != is.lift) {
     add(VerifyRule::kLifts, "at another height at this label of an object than in the original");
@@ -275,7 +275,10 @@ void Verifier::CheckChunk() {
     path_lines_.Append(lines[i]);
     seen_was_.Append(found[i].was);
     seen_is_.Append(found[i].is);
-    findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
+    for (Finding& finding : found[i].breaks) {
+      finding.at.layer = chunk_was_.layers[i].index;
+      findings_.push_back(std::move(finding));
+    }
     if (rest_) rest_->Take(std::move(islands[i]), chunk_was_.layers[i].index, findings_);
   }
   if ((rules_ & RuleBit(VerifyRule::kObstacles)) != 0) CheckObstacles(layers);
@@ -321,23 +324,21 @@ void Verifier::Add(Finding finding) {
   if (((rules_ >> rule) & 1u) == 0) return;
   if (report_.counts[rule]++ >= static_cast<int64_t>(VerifyReport::kMostBreaks)) return;
   // What one file lacks was to be done on the way to the same path.
-  if (finding.original_line == 0 && finding.optimised_line > 0) {
-    finding.original_line = path_lines_.OriginalOf(finding.optimised_line);
-  } else if (finding.optimised_line == 0 && finding.original_line > 0) {
-    finding.optimised_line = path_lines_.OptimisedOf(finding.original_line);
+  auto& [line, layer] = finding.at;
+  if (finding.original_line == 0 && line > 0) {
+    finding.original_line = path_lines_.OriginalOf(line);
+  } else if (line == 0 && finding.original_line > 0) {
+    line = path_lines_.OptimisedOf(finding.original_line);
   }
-  if (finding.layer < 0 && finding.optimised_line > 0) {
-    finding.layer = LayerOf(finding.optimised_line);
-  }
-  const auto place = [](const std::string& name, uint32_t line) {
-    return line == 0 ? name : absl::StrCat(name, ":", line);
+  if (layer < 0 && line > 0) layer = LayerOf(line);
+  const auto place = [](const std::string& name, uint32_t of) {
+    return of == 0 ? name : absl::StrCat(name, ":", of);
   };
-  report_.breaks.push_back(
-      {finding.rule, finding.original_line, finding.optimised_line, finding.layer,
-       absl::StrFormat("%s: %s (%s; %s)", place(optimised_.name, finding.optimised_line),
-                       finding.what, std::string(VerifyRuleName(finding.rule)),
-                       place(original_.name, finding.original_line)),
-       finding.before_line});
+  report_.breaks.push_back({finding.rule, finding.original_line, line, layer,
+                            absl::StrFormat("%s: %s (%s; %s)", place(optimised_.name, line),
+                                            finding.what, std::string(VerifyRuleName(finding.rule)),
+                                            place(original_.name, finding.original_line)),
+                            finding.before_line});
 }
 
 // What no line of G-code shows: the byte order mark and the line ends. And the line that says what
@@ -345,17 +346,17 @@ void Verifier::Add(Finding finding) {
 void Verifier::CheckText() {
   if (is_.cut().ignored > std::max(was_.cut().ignored, 1u)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, static_cast<uint32_t>(is_.cut().last_ignored),
-                         -1, "one more line that says by what this file was optimised"});
+                         "one more line that says by what this file was optimised"});
   }
   if (Begins(original_.text, kMarkOfUtf8) != Begins(optimised_.text, kMarkOfUtf8)) {
-    findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
+    findings_.push_back({VerifyRule::kSamePrint, 1, 1,
                          "only one of the files begins with a byte order mark of UTF-8"});
   }
   // A file transfer may convert all line ends, but not some of them.
   const uint32_t ends = is_.lines().ends();
   const bool one_kind = (ends & (ends - 1)) == 0 && (ends & TextLines::kLoneReturn) == 0;
   if (const uint32_t odd = ends & ~was_.lines().ends(); odd != 0 && !one_kind) {
-    findings_.push_back({VerifyRule::kSamePrint, 0, is_.lines().FirstWithEnds(odd), -1,
+    findings_.push_back({VerifyRule::kSamePrint, 0, is_.lines().FirstWithEnds(odd),
                          "some lines have line ends that no line of the original has"});
   }
 }
@@ -364,7 +365,7 @@ void Verifier::Finish() {
   CheckText();
   Compare(findings_);
   std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
-    return std::pair(a.rule, a.optimised_line) < std::pair(b.rule, b.optimised_line);
+    return std::pair(a.rule, a.at.line) < std::pair(b.rule, b.at.line);
   });
   for (Finding& finding : findings_) Add(std::move(finding));
 }

@@ -124,18 +124,18 @@ SlicerSettings ReadSettings(std::string_view text) {
 
 LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
                      const WorkLimit& limit)
-    : was_(was), is_(is), layer_(layer), limit_(limit) {
+    : was_(was), is_(is), layer_(layer), limit_(limit), side_was_{was, true}, side_is_{is, false} {
   const TraceLayer& of_was = was.layers[layer];
   const TraceLayer& of_is = is.layers[layer];
   assert(of_was.end_section - of_was.first_section == of_is.end_section - of_is.first_section);
   // Where objects have changed places the original's sections are in the order of the other file.
-  first_path_ = UINT32_MAX;
+  side_was_.first_path = UINT32_MAX;
   for (uint32_t s = of_was.first_section; s < of_was.end_section; ++s) {
-    first_path_ = std::min(first_path_, was.sections[s].first_path);
-    end_was_ = std::max(end_was_, was.sections[s].end_path);
+    side_was_.first_path = std::min(side_was_.first_path, was.sections[s].first_path);
+    side_was_.end_path = std::max(side_was_.end_path, was.sections[s].end_path);
   }
-  first_is_ = is.sections[of_is.first_section].first_path;
-  end_is_ = is.sections[of_is.end_section - 1].end_path;
+  side_is_.first_path = is.sections[of_is.first_section].first_path;
+  side_is_.end_path = is.sections[of_is.end_section - 1].end_path;
   LearnFacts();
   LearnShapes();
   LearnIroning();
@@ -150,10 +150,9 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
 }
 
 void LayerPair::LearnFacts() {
-  facts_.resize(end_was_ - first_path_);
-  for (uint32_t path = first_path_; path < end_was_; ++path) {
+  for (uint32_t path = first_path_was(); path < end_path_was(); ++path) {
     const TracePath& traced = was_.paths[path];
-    Facts& facts = FactsOf(path);
+    Facts& facts = facts_.emplace_back();
     facts.first_piece = static_cast<uint32_t>(pieces_.size());
     AppendPieces(was_, path, pieces_);
     facts.piece_count = static_cast<uint32_t>(pieces_.size()) - facts.first_piece;
@@ -167,7 +166,7 @@ void LayerPair::LearnFacts() {
 
 // A line out and back also ends where it began.
 bool LayerPair::IsLoopToName(uint32_t path) const {
-  const Facts& facts = facts_[path - first_path_];
+  const Facts& facts = FactsOf(path);
   const bool unsure =
       facts.path_class == PathClass::kUnnamed || facts.path_class == PathClass::kWall;
   return unsure && facts.closed && facts.piece_count > 2;
@@ -184,13 +183,11 @@ void LayerPair::LearnShapes() {
   if (loops.empty()) return;
   JoinEqual(loops);
   const PieceTree tree(std::move(loops));
-  for (uint32_t path = first_path_; path < end_was_; ++path) {
-    Facts& facts = FactsOf(path);
+  for (uint32_t path = first_path_was(); path < end_path_was() && !Ended(); ++path) {
     if (!IsLoopToName(path)) continue;
-    if (Ended()) return;
-    const bool inside = IsInside(path, tree);
-    facts.path_class = inside ? PathClass::kInnerWall : PathClass::kOuterWall;
-    facts.outer = !inside;
+    Facts& facts = facts_[path - first_path_was()];
+    facts.outer = !IsInside(path, tree);
+    facts.path_class = facts.outer ? PathClass::kOuterWall : PathClass::kInnerWall;
   }
 }
 
@@ -225,9 +222,9 @@ bool LayerPair::IsInside(uint32_t path, const PieceTree& loops) const {
 void LayerPair::LearnIroning() {
   std::vector<LaidPath> paths(facts_.size());
   bool asks = false;
-  for (uint32_t path = first_path_; path < end_was_; ++path) {
+  for (uint32_t path = first_path_was(); path < end_path_was(); ++path) {
     const PathClass path_class = ClassOf(path);
-    LaidPath& laid = paths[path - first_path_];
+    LaidPath& laid = paths[path - first_path_was()];
     laid.asked = path_class == PathClass::kSkin || path_class == PathClass::kTop;
     laid.solid = laid.asked || path_class == PathClass::kBottom || IsWallClass(path_class);
     const bool apart = path_class == PathClass::kSkirt || path_class == PathClass::kSupport ||
@@ -252,7 +249,7 @@ void LayerPair::Match() {
     visits_.insert(visits_.end(), visits.begin(), visits.end());
     section_begin_.push_back(visits_.size());
   }
-  for (const TraceMove& move : was_.MovesOfLinks(first_path_, end_was_ + 1)) {
+  for (const TraceMove& move : was_.MovesOfLinks(first_path_was(), end_path_was() + 1)) {
     known_.insert(move.identity);
   }
 }

@@ -30,6 +30,14 @@ struct SlicerSettings {
 
 SlicerSettings ReadSettings(std::string_view text);
 
+// The paths of one file in a layer, with the links before each of them.
+struct LayerSide {
+  const TraceChunk& chunk;
+  const bool original;
+  uint32_t first_path = 0;
+  uint32_t end_path = 0;
+};
+
 class LayerPair {
  public:
   // Layer `layer` of both chunks. REQUIRES: their sections hold the same deposits.
@@ -39,14 +47,26 @@ class LayerPair {
   bool Ended() const { return limit_.Ended(); }
   const WorkLimit& limit() const { return limit_; }
 
+  const LayerSide& Side(bool original) const { return original ? side_was_ : side_is_; }
   const TraceChunk& was() const { return was_; }
   const TraceChunk& is() const { return is_; }
   int64_t index() const { return was_.layers[layer_].index; }
 
-  uint32_t first_path_was() const { return first_path_; }
-  uint32_t end_path_was() const { return end_was_; }
-  uint32_t first_path_is() const { return first_is_; }
-  uint32_t end_path_is() const { return end_is_; }
+  uint32_t first_path_was() const { return side_was_.first_path; }
+  uint32_t end_path_was() const { return side_was_.end_path; }
+  uint32_t first_path_is() const { return side_is_.first_path; }
+  uint32_t end_path_is() const { return side_is_.end_path; }
+
+  // Calls visit(side, link) for the links to all paths, first of the original, then of the other
+  // file.
+  template <typename Visit>
+  void ForEachLink(Visit visit) const {
+    for (const LayerSide* side : {&side_was_, &side_is_}) {
+      for (uint32_t link = side->first_path; link < side->end_path && !Ended(); ++link) {
+        visit(*side, link);
+      }
+    }
+  }
 
   const std::vector<Visit>& visits() const { return visits_; }
   absl::Span<const Visit> SectionVisits(size_t section) const {
@@ -63,12 +83,12 @@ class LayerPair {
 
   // The class of a path of the original: by name or else by shape; ironing also by what
   // lies under it.
-  PathClass ClassOf(uint32_t path) const { return facts_[path - first_path_].path_class; }
+  PathClass ClassOf(uint32_t path) const { return FactsOf(path).path_class; }
   bool IsWall(uint32_t path) const { return IsWallClass(ClassOf(path)); }
-  bool Closed(uint32_t path) const { return facts_[path - first_path_].closed; }
-  bool Outer(uint32_t path) const { return facts_[path - first_path_].outer; }
+  bool Closed(uint32_t path) const { return FactsOf(path).closed; }
+  bool Outer(uint32_t path) const { return FactsOf(path).outer; }
   absl::Span<const Piece> PiecesOf(uint32_t path) const {
-    const Facts& facts = facts_[path - first_path_];
+    const Facts& facts = FactsOf(path);
     return absl::MakeSpan(pieces_).subspan(facts.first_piece, facts.piece_count);
   }
   const std::vector<Piece>& pieces() const { return pieces_; }
@@ -78,6 +98,11 @@ class LayerPair {
 
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
+
+  // True unless `move` of that side is of the other file, and known.
+  bool Counts(const LayerSide& side, const TraceMove& move) const {
+    return side.original || !IsKnown(move);
+  }
 
   // The links of the other file whose travel nobody sees, and which need neither retract nor lift
   // nor wipe for that (hidden_links.h).
@@ -129,7 +154,7 @@ class LayerPair {
     uint32_t piece_count = 0;
   };
 
-  Facts& FactsOf(uint32_t path) { return facts_[path - first_path_]; }
+  const Facts& FactsOf(uint32_t path) const { return facts_[path - first_path_was()]; }
   void LearnFacts();
   bool IsLoopToName(uint32_t path) const;
   void LearnShapes();
@@ -141,11 +166,9 @@ class LayerPair {
   const TraceChunk& is_;
   const size_t layer_;
   const WorkLimit limit_;
-  uint32_t first_path_ = 0;
-  uint32_t end_was_ = 0;
-  uint32_t first_is_ = 0;
-  uint32_t end_is_ = 0;
-  std::vector<Facts> facts_;  // [path - first_path_]
+  LayerSide side_was_;
+  LayerSide side_is_;
+  std::vector<Facts> facts_;  // [path - first_path_was()]
   std::vector<Piece> pieces_;
   PieceTree outer_walls_;
   std::vector<Visit> visits_;

@@ -351,7 +351,7 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
     TraceSegment& last = optimised.segments[optimised.paths[p].end_segment - 1];
     if (std::string fault = FaultOf(original, optimised, *loop); !fault.empty()) {
       found.findings.push_back(
-          {VerifyRule::kSamePrint, original.LineOf(path), last.line, -1, std::move(fault)});
+          {VerifyRule::kSamePrint, original.LineOf(path), last.line, std::move(fault)});
     }
     TraceSegment& closing = optimised.segments[loop->closing];
     MovedGap& gap = found.gaps.emplace_back(MovedGap{is.index, {closing.digest, last.digest}, {}});

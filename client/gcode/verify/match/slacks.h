@@ -4,7 +4,10 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_SLACKS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_SLACKS_H_
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace traverse::gcode {
 
@@ -37,6 +40,15 @@ inline constexpr double kLooseMm = 2;
 // What nearly all do; and how many of a layer tell what they do.
 inline constexpr double kUsualShare = 0.99;
 inline constexpr int kFewestOfLayer = 4;
+
+// The value that kUsualShare of them do not exceed; 0 if there are none.
+inline float UsualOf(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 // Whether travel is longer than that of its kind tells anything about. Where slicers go by what
 // travel crosses, travel that crosses nothing may become a little longer.

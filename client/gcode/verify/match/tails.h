@@ -14,28 +14,24 @@ namespace traverse::gcode {
 class Tails {
  public:
   // With `any_speed`: only moves that lie on the path and do not go straight on beyond its end.
-  Tails(const LayerPair& layer, bool original, bool any_speed = false) {
-    const TraceChunk& chunk = original ? layer.was() : layer.is();
-    const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
-    const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
-    first_link_ = first;
-    moves_.assign(end - first + 1, 0);
+  Tails(const LayerPair& layer, bool original, bool any_speed = false)
+      : first_link_(layer.Side(original).first_path) {
+    const LayerSide& side = layer.Side(original);
+    moves_.assign(side.end_path - first_link_ + 1, 0);
+    const auto note = [&](uint32_t path, absl::Span<const Piece> pieces) {
+      moves_[path + 1 - first_link_] = LayerPair::TailMoves(side.chunk, path, pieces, any_speed);
+    };
     // The travel to the layer begins with moves along the last path of the layer before.
-    if (first > 0) {
+    if (first_link_ > 0) {
       std::vector<Piece> pieces;
-      AppendPieces(chunk, first - 1, pieces);
-      moves_[0] = LayerPair::TailMoves(chunk, first - 1, pieces, any_speed);
+      AppendPieces(side.chunk, first_link_ - 1, pieces);
+      note(first_link_ - 1, pieces);
     }
-    if (original) {
-      for (uint32_t path = first; path < end; ++path) {
-        moves_[path + 1 - first] =
-            LayerPair::TailMoves(chunk, path, layer.PiecesOf(path), any_speed);
-      }
-    } else {
-      for (const Visit& visit : layer.visits()) {
-        moves_[visit.last_path + 1 - first] =
-            LayerPair::TailMoves(chunk, visit.last_path, layer.PiecesOf(visit.path), any_speed);
-      }
+    for (const Visit& visit : layer.visits()) {
+      if (!original) note(visit.last_path, layer.PiecesOf(visit.path));
+    }
+    for (uint32_t path = first_link_; original && path < side.end_path; ++path) {
+      note(path, layer.PiecesOf(path));
     }
   }
 
@@ -46,7 +42,7 @@ class Tails {
   }
 
  private:
-  uint32_t first_link_ = 0;
+  const uint32_t first_link_;
   std::vector<uint32_t> moves_;
 };
 

@@ -99,7 +99,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
     if (!move.sideways()) continue;
     if (move.kind == MoveKind::kTravel && move.in_print && move.arc && !layer.IsKnown(move)) {
       findings.breaks.push_back(
-          {VerifyRule::kBounds, layer.OriginalLine(link), move.line, layer.index(),
+          {VerifyRule::kBounds, layer.OriginalLine(link), move.line,
            "travel along an arc that the original does not have in this layer"});
     }
     const bool counts = move.kind == MoveKind::kTravel && move.in_print && !move.arc;
@@ -114,11 +114,11 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
     if (bend <= kSamePointMm) continue;
     if (LeadsAroundAWall(layer, *last, move)) {
       findings.is.detours.push_back(
-          {last->line, layer.index(), static_cast<float>(ExcessOf(*last, move))});
+          {{last->line, layer.index()}, static_cast<float>(ExcessOf(*last, move))});
       continue;
     }
     findings.breaks.push_back(
-        {VerifyRule::kBounds, layer.OriginalLine(link), last->line, layer.index(),
+        {VerifyRule::kBounds, layer.OriginalLine(link), last->line,
          absl::StrFormat("travel bends by %.2f mm, but leads around no outer wall", bend)});
   }
 }
@@ -134,7 +134,7 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
     const bool bends = BendOf(before, move) > kSamePointMm;
     if (!bends || !LeadsAroundAWall(layer, before, move)) continue;
     seen.detours.push_back(
-        {before.line, layer.index(), static_cast<float>(ExcessOf(before, move))});
+        {{before.line, layer.index()}, static_cast<float>(ExcessOf(before, move))});
     return;
   }
 }
@@ -168,7 +168,7 @@ void CompareBounds(const Observations& was, const Observations& is, const RuleCo
                    std::vector<Finding>& breaks) {
   for (const Detour& detour : is.detours) {
     if (!was.detours.empty() || context.settings.leads_around_walls) break;
-    breaks.push_back({VerifyRule::kBounds, 0, detour.line, detour.layer,
+    breaks.push_back({VerifyRule::kBounds, 0, detour.at,
                       absl::StrFormat("travel is %.2f mm longer because of a bend around an outer "
                                       "wall; the original leads no travel around walls",
                                       detour.excess_mm)});

@@ -61,7 +61,7 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
     const uint32_t segment = path.first_segment + behind;
     if (places.contains(Mix(command.name, segment))) continue;
     findings.breaks.push_back(
-        {VerifyRule::kCommands, was.segments[segment].line, command.line, layer.index(),
+        {VerifyRule::kCommands, was.segments[segment].line, command.line,
          "a command between two segments of a path that have none between them in the original"});
   }
 }
@@ -77,7 +77,7 @@ void CheckLineFaults(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
     auto& [count, line] = had[{fault.section, fault.kind}];
     if (count-- > 0) continue;
     const bool sets_back = fault.kind == LineFaultKind::kSetsBack;
-    breaks.push_back({sets_back ? VerifyRule::kCommands : VerifyRule::kWipes, line, fault.line, -1,
+    breaks.push_back({sets_back ? VerifyRule::kCommands : VerifyRule::kWipes, line, fault.line,
                       sets_back ? "a value is set and reset without a move in between"
                       : fault.kind == LineFaultKind::kUnmarked
                           ? "a wipe without the marks of wipes"

@@ -113,19 +113,18 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepa
   const bool as_sliced = alike && visit.forward && visit.entry == 0;
   if (LeavesUnlike(layer, visit, as_sliced, turned)) {
     findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
-                               layer.index(),
                                "leaves the path by a short move that the original does not have"});
     return;
   }
   if (const double later_mm = as_sliced ? RetractsLaterBy(layer, visit) : 0; later_mm > 0) {
     findings.breaks.push_back(
-        {VerifyRule::kPathEnds, line_was, is.MovesOf(link_is).front().line, layer.index(),
+        {VerifyRule::kPathEnds, line_was, is.MovesOf(link_is).front().line,
          absl::StrFormat("retracts %.2f mm farther behind the path than the original", later_mm)});
     return;
   }
   if (was == nullptr || !RetractsAtOnce(is, link_is)) return;
-  const uint32_t line_is = is.MovesOf(link_is).front().line;
-  const Finding lost{VerifyRule::kPathEnds, line_was, line_is, layer.index(),
+  const Place at{is.MovesOf(link_is).front().line, layer.index()};
+  const Finding lost{VerifyRule::kPathEnds, line_was, at,
                      "retracts at the end of the path; the original leaves it before"};
   if (alike && LeadAlike(layer, visit)) {
     findings.breaks.push_back(lost);
@@ -190,7 +189,7 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
   const absl::Span<const TraceMove> moves = is.MovesOf(visit.last_path + 1);
   const uint32_t line = moves.empty() ? is.segments[visit.last_segment].line : moves.front().line;
   findings.breaks.push_back(
-      {VerifyRule::kPathEnds, had->line, line, layer.index(),
+      {VerifyRule::kPathEnds, had->line, line,
        absl::StrFormat("goes on along the loop for %.2f mm, but for %.2f mm in the original", mm,
                        had->length_mm())});
 }

@@ -91,7 +91,9 @@ void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
     if (!hit) continue;
     const Point at = hit->at;
     breaks.push_back(
-        {VerifyRule::kObstacles, 0, move.line, layer,
+        {VerifyRule::kObstacles,
+         0,
+         {move.line, layer},
          hit->off_mm > 0
              ? absl::StrFormat("leads past X%.1f Y%.1f, where something stands %.2f mm higher, at "
                                "%.1f mm, and no move of the original so near to it",

@@ -276,7 +276,7 @@ class OrderKeeper {
     const TraceChunk& is = layer_.is();
     const Visit& visit = visits[PlaceOf(later)];
     findings.breaks.push_back({VerifyRule::kOrder, was.LineOf(was.paths[later]),
-                               is.segments[visit.first_segment].line, layer_.index(),
+                               is.segments[visit.first_segment].line,
                                absl::StrFormat("this %s is printed before the %s of line %d of the "
                                                "original, but there it comes after it",
                                                std::string(PathClassName(layer_.ClassOf(later))),
@@ -321,7 +321,6 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
       findings.breaks.push_back(
           {VerifyRule::kOrder, layer.was().LineOf(layer.was().paths[piece.path]),
            layer.is().LineOf(layer.is().paths[layer.SectionIs(section(piece)).first_path]),
-           layer.index(),
            absl::StrFormat("this object is printed before one that it touches, which comes before "
                            "it in the original, with line %d",
                            layer.was().LineOf(layer.was().paths[other.path]))});

@@ -91,7 +91,7 @@ void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findin
     const TraceMove* was =
         PokeBehind(layer.was(), visit.path, [](const TraceMove&) { return false; });
     if (was != nullptr) {
-      findings.was.pokes.push_back({VerifyRule::kPathEnds, was->line, 0, layer.index(), ""});
+      findings.was.pokes.push_back({VerifyRule::kPathEnds, was->line});
     }
   }
   if (!layer.EndsPath(visit)) return;
@@ -100,8 +100,9 @@ void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findin
   if (is == nullptr) return;
   const TracePath& path = layer.was().paths[visit.path];
   findings.is.pokes.push_back({VerifyRule::kPathEnds,
-                               layer.was().segments[path.end_segment - 1].line, is->line,
-                               layer.index(), "leaves the path and comes back to its end"});
+                               layer.was().segments[path.end_segment - 1].line,
+                               {is->line, layer.index()},
+                               "leaves the path and comes back to its end"});
 }
 
 }  // namespace
@@ -123,8 +124,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
         TailOf(layer, is, visit.last_path, pieces, leads_on ? had.length_mm + slack : HUGE_VAL);
     const uint32_t end_line = is.segments[visit.last_segment].line;
     const auto report = [&](uint32_t original, uint32_t optimised, std::string what) {
-      findings.breaks.push_back(
-          {VerifyRule::kPathEnds, original, optimised, layer.index(), std::move(what)});
+      findings.breaks.push_back({VerifyRule::kPathEnds, original, optimised, std::move(what)});
     };
     const bool same_end = visit.forward && visit.entry == 0;
     if (had.length_mm < kLeastDepartureMm) {

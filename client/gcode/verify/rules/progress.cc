@@ -90,7 +90,7 @@ void ComparePlace(const ProgressLog& was, const ProgressLog& is, size_t i,
   if (of_print.excess <= 0) return;
   const Displacement of_file = DisplacementOf(was, was.all_seconds, is, is.all_seconds, i);
   if (of_file.excess <= 0) return;
-  breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
+  breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line,
                     absl::StrFormat("states %.0f %% at %.1f %% of the print time; in the original "
                                     "it stands at %.1f %%",
                                     of_file.stated, of_file.percent, of_file.given)});
@@ -109,7 +109,7 @@ void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<
   const size_t common = std::min(was.lines.size(), is.lines.size());
   for (size_t i = 0; i < common; ++i) {
     if (was.lines[i].digest == is.lines[i].digest) continue;
-    breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
+    breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line,
                       "this line of progress is out of sequence"});
     return;
   }
@@ -117,8 +117,8 @@ void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<
     const auto line = [common](const ProgressLog& log) {
       return common < log.lines.size() ? log.lines[common].line : 0;
     };
-    breaks.push_back({VerifyRule::kProgress, line(was), line(is), -1,
-                      "this line of progress is out of sequence"});
+    breaks.push_back(
+        {VerifyRule::kProgress, line(was), line(is), "this line of progress is out of sequence"});
     return;
   }
   for (size_t i = 0; i < common; ++i) ComparePlace(was, is, i, breaks);

@@ -245,7 +245,9 @@ void RestWatch::Take(PrintedIslands layer, int64_t index, std::vector<Finding>& 
       if (broken[two] || !RestsTooShort(below, under.first_path, island)) return;
       broken[two] = true;
       breaks.push_back(
-          {VerifyRule::kRest, island.line_was, island.line_is, index,
+          {VerifyRule::kRest,
+           island.line_was,
+           {island.line_is, index},
            absl::StrFormat(
                "printed %.1f s after the island below; that rests %.1f s in the original"
                " where %.4g s are enough",

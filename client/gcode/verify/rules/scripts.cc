@@ -44,7 +44,7 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
       std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), DoTheSame);
   if (a == moves.end() && b == others.end()) return;
   breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
-                    b == others.end() ? 0 : b->line, -1,
+                    b == others.end() ? 0 : b->line,
                     "leaves the print differently from the original"});
 }
 
@@ -59,7 +59,7 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
         std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), AreEqual);
     if (a == moves.end() && b == others.end()) continue;
     findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
-                               b == others.end() ? 0 : b->line, layer.index(),
+                               b == others.end() ? 0 : b->line,
                                "the moves before an unknown line differ from the original's"});
   }
 }

@@ -43,7 +43,6 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
     if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
     findings.breaks.push_back(
         {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,
-         layer.index(),
          absl::StrFormat("the seam of this %s is %.2f mm from where it was%s",
                          std::string(PathClassName(layer.ClassOf(visit.path))),
                          DistanceOf(seam, path.start),

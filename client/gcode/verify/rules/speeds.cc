@@ -26,9 +26,10 @@ std::string KindName(size_t kind) {
                                          : MoveKindName(static_cast<MoveKind>(kind)));
 }
 
-void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMove& move,
-          int64_t layer) {
-  Seen& seen = NoteSeen(map, key, move.line, layer);
+void Note(const LayerPair& layer, const TraceMove& move, Observations& observed) {
+  constexpr size_t kMostOfALayer = 64;
+  Seen& seen = observed.accelerations[KindOf(move)][move.acceleration];
+  if (seen.places.size() <= kMostOfALayer) seen.places.push_back({move.line, layer.index()});
   if (move.sideways()) {
     seen.longest_mm = std::max(seen.longest_mm, static_cast<float>(move.length_mm()));
   }
@@ -40,8 +41,7 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
     if (layer.Ended()) return;
     if (chunk.links[link].scripted) continue;
     for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
-      if (!move.in_print) continue;
-      Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+      if (move.in_print) Note(layer, move, seen);
     }
   }
 }
@@ -106,10 +106,10 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
     if (chunk.links[link].scripted) continue;
     for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
       if (!IsNew(layer, link, move) || move.firmware) continue;
-      Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+      Note(layer, move, seen);
       if (IsTooLong(move, longest)) {
         seen.long_travels.push_back(
-            {move.acceleration, static_cast<float>(move.length_mm()), move.line, layer.index()});
+            {move.acceleration, static_cast<float>(move.length_mm()), {move.line, layer.index()}});
       }
     }
   }
@@ -131,7 +131,7 @@ void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
   for (const TraceMove& move : was.MovesOfLast()) accelerations.insert(key(move));
   for (const TraceMove& move : is.MovesOfLast()) {
     if (move.firmware || layer.IsKnown(move) || accelerations.contains(key(move))) continue;
-    Note(findings.is.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+    Note(layer, move, findings.is);
   }
 }
 
@@ -160,11 +160,20 @@ float LongestUnder(const Observations& was, uint64_t acceleration) {
   return longest;
 }
 
+// Where the first of them was seen; 0 if there is none.
+uint32_t FirstLineOf(const absl::flat_hash_map<uint64_t, Seen>& accelerations) {
+  uint32_t line = 0;
+  for (const auto& [acceleration, seen] : accelerations) {
+    if (line == 0 || seen.places[0].line < line) line = seen.places[0].line;
+  }
+  return line;
+}
+
 void CompareLengths(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const LongTravel& travel : is.long_travels) {
     const float longest = LongestUnder(was, travel.acceleration);
     if (longest <= 0 || !IsMuchLonger(travel.length_mm, longest)) continue;
-    breaks.push_back({VerifyRule::kSpeeds, 0, travel.line, travel.layer,
+    breaks.push_back({VerifyRule::kSpeeds, 0, travel.at,
                       absl::StrFormat("travel of %.2f mm with an acceleration that the original "
                                       "does not use for travel longer than %.2f mm",
                                       travel.length_mm, longest)});
@@ -176,13 +185,14 @@ void CompareLengths(const Observations& was, const Observations& is, std::vector
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareLengths(was, is, breaks);
   for (size_t kind = 0; kind < was.accelerations.size(); ++kind) {
+    const uint32_t first_line = FirstLineOf(was.accelerations[kind]);
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
       if (IsKnownAcceleration(was, kind, acceleration)) continue;
-      AddAt(seen,
-            {VerifyRule::kSpeeds, FirstLineOf(was.accelerations[kind]), 0, -1,
-             absl::StrFormat("%s with an acceleration that none in the original has",
-                             KindName(kind))},
-            breaks);
+      for (const Place& place : seen.places) {
+        breaks.push_back({VerifyRule::kSpeeds, first_line, place,
+                          absl::StrFormat("%s with an acceleration that none in the original has",
+                                          KindName(kind))});
+      }
     }
   }
 }

@@ -58,13 +58,13 @@ void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
       continue;
     }
     breaks.push_back(
-        {VerifyRule::kStandstill, 0, event.line, -1,
+        {VerifyRule::kStandstill, 0, event.line,
          absl::StrFormat("%s, which the original does not %s", Pushes(event.amount),
                          event.fresh ? "here" : "so often in this part of the print")});
   }
   for (const auto& [key, left] : lines) {
     for (const uint32_t line : left) {
-      breaks.push_back({VerifyRule::kStandstill, line, 0, -1,
+      breaks.push_back({VerifyRule::kStandstill, line, 0,
                         absl::StrFormat("the original %s, which is missing",
                                         Pushes(std::get<2>(key) * VerifyMachine::kSlack))});
     }

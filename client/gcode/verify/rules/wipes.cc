@@ -22,19 +22,6 @@ constexpr float kAsLong = 0.9f;
 constexpr float kUnevenSlackMm = 0.01f;
 constexpr float kTellingMm = 0.3f;  // rounding is nothing compared with the filament of such a move
 
-struct Wipe {
-  float off_mm = 0;
-  float astray_mm = 0;
-  float turned_mm = 0;  // by how much an arc of it would lie nearer to the path the other way
-  float length_mm = 0;
-  float pulled_mm = 0;
-  float steepest = 0;  // filament retracted per mm of one move
-  float uneven_mm = 0;
-  bool turns_back = false;
-  uint32_t line = 0;  // 0: none
-  bool known = true;
-};
-
 // Of the angle by which the travel from `a` over `b` to `c` turns at `b`; 1 if it does not move
 // there.
 double CosineOfTurn(Point a, Point b, Point c) {
@@ -103,7 +90,7 @@ float Unevenness(const std::vector<const TraceMove*>& moves, const Wipe& wipe) {
   double pulled = 0;
   double length = 0;
   double most = 0;
-  const double pull = static_cast<double>(wipe.pulled_mm / wipe.length_mm);
+  const auto pull = static_cast<double>(wipe.pull());
   for (const TraceMove* move : moves) {
     pulled -= static_cast<double>(move->filament) * 1e-6;
     length += move->length_mm();
@@ -115,14 +102,14 @@ float Unevenness(const std::vector<const TraceMove*>& moves, const Wipe& wipe) {
 // The wipe after path `path` of `chunk`, whose pieces are `pieces`.
 Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
                 absl::Span<const Piece> pieces, bool measure) {
-  Wipe wipe;
+  Wipe wipe{.at = {0, layer.index()}};
   const std::vector<const TraceMove*> moves = WipeMoves(layer, chunk, path);
   const TraceMove* last = nullptr;
   for (const TraceMove* each : moves) {
     const TraceMove& move = *each;
     const TraceMove* before = std::exchange(last, each);
-    const bool returns = wipe.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
-    if (wipe.line == 0) wipe.line = move.line;
+    const bool returns = wipe.at.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
+    if (wipe.at.line == 0) wipe.at.line = move.line;
     wipe.known &= layer.IsKnown(move);
     wipe.length_mm += static_cast<float>(move.length_mm());
     const auto pulled = static_cast<float>(static_cast<double>(-move.filament) * 1e-6);
@@ -138,30 +125,23 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     if (!move.arc) continue;
     wipe.turned_mm = std::max(wipe.turned_mm, static_cast<float>(TurnedMm(move, pieces)));
   }
-  if (measure && wipe.line != 0) wipe.uneven_mm = Unevenness(moves, wipe);
+  if (measure && wipe.at.line != 0) wipe.uneven_mm = Unevenness(moves, wipe);
   return wipe;
 }
 
-// `original_line`: where the wipe, or its path, is in the original.
-WipeDeviation DeviationOf(const Wipe& wipe, uint32_t original_line, const LayerPair& layer) {
-  return {wipe.off_mm,   wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
-          wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.turns_back,
-          wipe.line,     original_line,  layer.index()};
-}
-
-// A bound that all but a few wipes of the original keep, but at least `least_mm`.
-float Limit(std::vector<float> values, double least_mm) {
+// A bound of `deviation` that all but a few wipes of the original keep, but at least `least_mm`.
+float LimitOf(const std::vector<Wipe>& wipes, float Wipe::*deviation, double least_mm) {
   const auto least = static_cast<float>(least_mm);
-  if (values.empty()) return least;
-  const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return std::max(least, values[static_cast<size_t>(at)] + 0.002f) + 1e-4f;
+  if (wipes.empty()) return least;
+  std::vector<float> values;
+  for (const Wipe& wipe : wipes) values.push_back(wipe.*deviation);
+  return std::max(least, UsualOf(std::move(values)) + 0.002f) + 1e-4f;
 }
 
 // How wipes pull filament back.
 struct Pulls {
-  std::vector<float> longest;                 // their lengths, descending
-  std::vector<const WipeDeviation*> fastest;  // [i] of the i + 1 longest ones
+  std::vector<float> longest;        // their lengths, descending
+  std::vector<const Wipe*> fastest;  // [i] of the i + 1 longest ones
   float steepest = 0;
   float gentlest = 0;
   float uneven_mm = 0;
@@ -169,36 +149,35 @@ struct Pulls {
   bool turns_back = false;
 
   // Some are cut short, and pull as much: that tells nothing of longer ones.
-  const WipeDeviation& FastestOfLength(float length_mm) const {
+  const Wipe& FastestOfLength(float length_mm) const {
     const auto behind = std::partition_point(
         longest.begin(), longest.end(), [length_mm](float l) { return l >= kAsLong * length_mm; });
     const auto as_long = static_cast<size_t>(behind - longest.begin());
     return *fastest[(as_long == 0 ? fastest.size() : as_long) - 1];
   }
 
-  bool Unlike(const WipeDeviation& wipe) const {
-    return wipe.steepest > std::max(steepest, fastest.back()->pull) * kPullSlack ||
-           wipe.pull < gentlest * kGentleShare || wipe.uneven_mm > uneven_mm + kUnevenSlackMm ||
-           wipe.pull * wipe.length_mm > most_mm + kAmountSlackMm;
+  bool Unlike(const Wipe& wipe) const {
+    return wipe.steepest > std::max(steepest, fastest.back()->pull()) * kPullSlack ||
+           wipe.pull() < gentlest * kGentleShare || wipe.uneven_mm > uneven_mm + kUnevenSlackMm ||
+           wipe.pulled_mm > most_mm + kAmountSlackMm;
   }
 };
 
-Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
+Pulls PullsOf(const std::vector<Wipe>& wipes) {
   Pulls pulls;
-  for (const WipeDeviation& wipe : wipes) {
-    pulls.gentlest = pulls.fastest.empty() ? wipe.pull : std::min(pulls.gentlest, wipe.pull);
+  for (const Wipe& wipe : wipes) {
+    pulls.gentlest = pulls.fastest.empty() ? wipe.pull() : std::min(pulls.gentlest, wipe.pull());
     pulls.fastest.push_back(&wipe);
     pulls.steepest = std::max(pulls.steepest, wipe.steepest);
     pulls.uneven_mm = std::max(pulls.uneven_mm, wipe.uneven_mm);
-    pulls.most_mm = std::max(pulls.most_mm, wipe.pull * wipe.length_mm);
+    pulls.most_mm = std::max(pulls.most_mm, wipe.pulled_mm);
     pulls.turns_back |= wipe.turns_back;
   }
-  std::sort(
-      pulls.fastest.begin(), pulls.fastest.end(),
-      [](const WipeDeviation* a, const WipeDeviation* b) { return a->length_mm > b->length_mm; });
+  std::sort(pulls.fastest.begin(), pulls.fastest.end(),
+            [](const Wipe* a, const Wipe* b) { return a->length_mm > b->length_mm; });
   for (size_t i = 0; i < pulls.fastest.size(); ++i) {
     pulls.longest.push_back(pulls.fastest[i]->length_mm);
-    if (i > 0 && pulls.fastest[i - 1]->pull >= pulls.fastest[i]->pull)
+    if (i > 0 && pulls.fastest[i - 1]->pull() >= pulls.fastest[i]->pull())
       pulls.fastest[i] = pulls.fastest[i - 1];
   }
   return pulls;
@@ -229,20 +208,19 @@ bool MayLackWipe(const LayerPair& layer, uint32_t link, bool leaves_wiping,
 
 void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
-  std::vector<Wipe> wiped(layer.end_path_was() - layer.first_path_was());
+  std::vector<uint32_t> wiped;  // [path - first path of the layer] the line; 0: not wiped
   bool any = false;
   for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
     if (layer.Ended()) return;
     const Wipe wipe = WipeBehind(layer, was, path, layer.PiecesOf(path), true);
-    wiped[path - layer.first_path_was()] = wipe;
-    if (wipe.line == 0) continue;
+    wiped.push_back(wipe.at.line);
+    if (wipe.at.line == 0) continue;
     any = true;
-    if (was.links[path + 1].scripted) continue;
-    findings.was.wipes.push_back(DeviationOf(wipe, wipe.line, layer));
+    if (!was.links[path + 1].scripted) findings.was.wipes.push_back(wipe);
   }
   for (const Visit& visit : layer.visits()) {
     if (layer.Ended()) return;
-    const Wipe& had = wiped[visit.path - layer.first_path_was()];
+    const uint32_t had_line = wiped[visit.path - layer.first_path_was()];
     if (!any && layer.is().MovesOf(visit.last_path + 1).empty()) continue;
     // Else what follows is of the path to which the other file goes on.
     const bool ends = layer.EndsPath(visit);
@@ -251,57 +229,49 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
       wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
     }
     const bool may_lack =
-        ends ? MayLackWipe(layer, visit.last_path + 1, wiped.back().line != 0, context)
+        ends ? MayLackWipe(layer, visit.last_path + 1, wiped.back() != 0, context)
              : context.permissions.drops_wipes() || context.permissions.hides_travel();
-    if (had.line != 0 && wipe.line == 0 && !may_lack) {
-      findings.breaks.push_back({VerifyRule::kWipes, had.line,
-                                 layer.is().segments[visit.last_segment].line, layer.index(),
+    if (had_line != 0 && wipe.at.line == 0 && !may_lack) {
+      findings.breaks.push_back({VerifyRule::kWipes, had_line,
+                                 layer.is().segments[visit.last_segment].line,
                                  "the wipe after this path is missing"});
     }
-    if (wipe.line == 0 || wipe.known) continue;
+    if (wipe.at.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
-    findings.is.wipes.push_back(DeviationOf(wipe, was.LineOf(was.paths[visit.path]), layer));
+    wipe.path_line = was.LineOf(was.paths[visit.path]);
+    findings.is.wipes.push_back(wipe);
   }
 }
 
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  std::vector<float> off;
-  std::vector<float> astray;
-  std::vector<float> turned;
-  for (const WipeDeviation& wipe : was.wipes) {
-    off.push_back(wipe.off_mm);
-    astray.push_back(wipe.astray_mm);
-    turned.push_back(wipe.turned_mm);
-  }
-  const float off_limit = Limit(std::move(off), kOnPathMm);
-  const float astray_limit = Limit(std::move(astray), kOnPathMm);
-  const float turned_limit = Limit(std::move(turned), kTurnedMm);
+  const float off_limit = LimitOf(was.wipes, &Wipe::off_mm, kOnPathMm);
+  const float astray_limit = LimitOf(was.wipes, &Wipe::astray_mm, kOnPathMm);
+  const float turned_limit = LimitOf(was.wipes, &Wipe::turned_mm, kTurnedMm);
   const Pulls pulls = PullsOf(was.wipes);
-  for (const WipeDeviation& wipe : is.wipes) {
+  for (const Wipe& wipe : is.wipes) {
     if (!pulls.fastest.empty() && pulls.Unlike(wipe)) {
-      breaks.push_back({VerifyRule::kWipes, pulls.fastest.back()->line, wipe.line, wipe.layer,
+      breaks.push_back({VerifyRule::kWipes, pulls.fastest.back()->at.line, wipe.at,
                         "a wipe retracts unlike those of the original"});
     }
-    const WipeDeviation* most =
-        pulls.fastest.empty() ? nullptr : &pulls.FastestOfLength(wipe.length_mm);
-    if (most != nullptr && wipe.pull > most->pull * kPullSlack) {
+    const Wipe* most = pulls.fastest.empty() ? nullptr : &pulls.FastestOfLength(wipe.length_mm);
+    if (most != nullptr && wipe.pull() > most->pull() * kPullSlack) {
       breaks.push_back(
-          {VerifyRule::kWipes, most->line, wipe.line, wipe.layer,
+          {VerifyRule::kWipes, most->at.line, wipe.at,
            absl::StrFormat("a wipe retracts %.3f mm per mm; the most in the original is %.3f mm",
-                           wipe.pull, most->pull)});
+                           wipe.pull(), most->pull())});
     }
     if (wipe.turns_back && !pulls.turns_back) {
-      breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+      breaks.push_back({VerifyRule::kWipes, wipe.path_line, wipe.at,
                         "a wipe turns back where its path does not"});
       continue;
     }
     if (wipe.turned_mm > turned_limit) {
-      breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+      breaks.push_back({VerifyRule::kWipes, wipe.path_line, wipe.at,
                         "an arc of a wipe turns away from the path that it follows"});
       continue;
     }
     if (wipe.off_mm <= off_limit && wipe.astray_mm <= astray_limit) continue;
-    breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+    breaks.push_back({VerifyRule::kWipes, wipe.path_line, wipe.at,
                       absl::StrFormat("a wipe leads %.2f mm away from the path that it follows",
                                       std::max(wipe.off_mm, wipe.astray_mm))});
   }

@@ -123,7 +123,7 @@ void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings) {
     findings.breaks.push_back(
         {VerifyRule::kKeptTravels,
          one == had.end() ? was.LineOf(was.paths[found->second]) : one->line,
-         more ? other->line : is.LineOf(is.paths[link]), layer.index(),
+         more ? other->line : is.LineOf(is.paths[link]),
          absl::StrFormat("a %s between two paths that follow each other in the original too, "
                          "which has another %s there",
                          NameOf(has, other), NameOf(had, one))});

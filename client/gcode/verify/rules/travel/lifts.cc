@@ -57,14 +57,6 @@ bool EndsLow(const LiftLog& log, const TravelProfile& travel, float lift) {
                      });
 }
 
-// The value that kUsualShare of them do not exceed.
-float Usual(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<size_t>(kUsualShare * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
-
 // What travel of one kind does.
 struct Habit {
   bool lifts = false;
@@ -83,7 +75,7 @@ Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
     if (apex < kLiftedMm) continue;
     if (++lifted == 1 || apex < habit.least_mm) {
       habit.least_mm = apex;
-      habit.least_line = travel.line;
+      habit.least_line = travel.at.line;
     }
   }
   habit.lifts = lifted > 0 &&
@@ -102,8 +94,8 @@ Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
   habit.may_end_low =
       static_cast<double>(end_low) > (1 - kUsualShare) * static_cast<double>(lifted);
   habit.low_mm =
-      std::max(static_cast<float>(kLeastTravelMm), Usual(std::move(low_mm)) * kLowFactor);
-  habit.low_share = std::max(kLowShare, Usual(std::move(low_share)) * 1.01f);
+      std::max(static_cast<float>(kLeastTravelMm), UsualOf(std::move(low_mm)) * kLowFactor);
+  habit.low_share = std::max(kLowShare, UsualOf(std::move(low_share)) * 1.01f);
   return habit;
 }
 
@@ -113,11 +105,10 @@ int64_t SlopeOf(double rise_mm, double length_mm, double least_mm) {
   return std::llround(rise_mm * 10'000 / length_mm);
 }
 
-// True if `map` has `key`, or one within `slack` of it.
-template <typename Map>
-bool Knows(const Map& map, int64_t key, int64_t slack) {
-  for (int64_t near = key - slack; near <= key + slack; ++near) {
-    if (map.contains(near)) return true;
+// True if there is `value`, or one within `slack` of it.
+bool Knows(const absl::flat_hash_set<int64_t>& known, int64_t value, int64_t slack) {
+  for (int64_t near = value - slack; near <= value + slack; ++near) {
+    if (known.contains(near)) return true;
   }
   return false;
 }
@@ -126,18 +117,11 @@ bool Knows(const Map& map, int64_t key, int64_t slack) {
 // comes down on its way to the next object.
 class LinkProfiles {
  public:
-  LinkProfiles(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
-               Observations& seen)
-      : layer_(layer),
-        chunk_(chunk),
-        link_(link),
-        traced_(chunk.links[link]),
-        to_mm_(chunk.paths[link].z_mm),
-        only_new_(only_new),
-        seen_(seen) {}
+  LinkProfiles(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen)
+      : layer_(layer), side_(side), link_(link), to_mm_(side.chunk.paths[link].z_mm), seen_(seen) {}
 
   void Append() {
-    const absl::Span<const TraceMove> moves = chunk_.MovesOf(link_);
+    const absl::Span<const TraceMove> moves = side_.chunk.MovesOf(link_);
     if (moves.empty()) return;
     const double z_before = moves.front().z_from_mm;
     level_ = std::abs(z_before - to_mm_) <= kOneHeightMm;
@@ -159,69 +143,67 @@ class LinkProfiles {
  private:
   void Begin(double z_mm) {
     base_mm_ = std::max(to_mm_, z_mm);
-    travel_ = {};
-    travel_.layer = layer_.index();
-    if (link_ > 0) travel_.ends = EndsOf(chunk_, link_);
+    travel_ = {.at = {0, layer_.index()}};
+    if (link_ > 0) travel_.ends = EndsOf(side_.chunk, link_);
     travel_.first = static_cast<uint32_t>(seen_.lifts.pieces.size());
     length_mm_ = 0;
-    known_ = true;
+    counts_ = false;
   }
 
   void Take(const TraceMove& move) {
-    const bool known = only_new_ && layer_.IsKnown(move);
-    travel_.line = travel_.line == 0 ? move.line : travel_.line;
+    const bool counts = layer_.Counts(side_, move);
+    if (travel_.at.line == 0) travel_.at.line = move.line;
     length_mm_ += move.length_mm();
-    known_ &= known;
+    counts_ |= counts;
     seen_.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm_),
                                   static_cast<float>(move.z_to_mm - base_mm_),
                                   static_cast<float>(move.length_mm())});
-    if (!move.states_z || known) return;
+    if (!move.states_z || !counts) return;
     const int64_t um = std::llround((move.z_to_mm - to_mm_) * 1000);
     const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
-    if (only_new_) {
-      seen_.stated.push_back({um, slope, level_, move.line, layer_.index()});
-    } else {
-      seen_.heights.Of(level_).try_emplace(um, Seen{move.line, layer_.index()});
-      if (slope > 0) seen_.slopes.insert(slope);
+    if (!side_.original) {
+      seen_.stated.push_back({um, slope, level_, {move.line, layer_.index()}});
+      return;
     }
+    StatedHeights& heights = level_ ? seen_.level_heights : seen_.other_heights;
+    if (heights.um.empty()) heights.first_line = move.line;
+    heights.um.insert(um);
+    if (slope > 0) seen_.slopes.insert(slope);
   }
 
   void End() {
-    if (length_mm_ < kLeastMoveMm || known_) {
+    if (length_mm_ < kLeastMoveMm || !counts_) {
       seen_.lifts.pieces.resize(travel_.first);
       return;
     }
     travel_.end = static_cast<uint32_t>(seen_.lifts.pieces.size());
-    const bool between = traced_.new_layer || !level_;
-    const bool crossing = layer_.CrossingLength(chunk_, link_, !retracted_) > 0;
+    const bool between = side_.chunk.links[link_].new_layer || !level_;
+    const bool crossing = layer_.CrossingLength(side_.chunk, link_, !retracted_) > 0;
     seen_.lifts.travels[(retracted_ ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)]
         .push_back(travel_);
   }
 
   const LayerPair& layer_;
-  const TraceChunk& chunk_;
+  const LayerSide& side_;
   const uint32_t link_;
-  const TraceLink& traced_;
   const double to_mm_;  // the height of the path
-  const bool only_new_;
   Observations& seen_;
   bool level_ = false;
   bool retracted_ = false;
   TravelProfile travel_;
   double base_mm_ = 0;
   double length_mm_ = 0;
-  bool known_ = false;  // the original has all of it
+  bool counts_ = false;  // some of it does: LayerPair::Counts
 };
 
 // Appends the profiles of the travel in `link`, and the heights that it states.
-void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
-             Observations& seen) {
-  const TraceLink& traced = chunk.links[link];
+void Observe(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen) {
+  const TraceLink& traced = side.chunk.links[link];
   // The travel to the first path shows nothing about travel between layers.
-  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
   const bool in_print = moves.empty() || moves.front().in_print;
   if (traced.first || traced.scripted || !in_print) return;
-  LinkProfiles(layer, chunk, link, only_new, seen).Append();
+  LinkProfiles(layer, side, link, seen).Append();
 }
 
 std::string KindText(size_t kind) {
@@ -232,8 +214,8 @@ std::string KindText(size_t kind) {
 
 absl::Span<const TravelProfile> OfLayer(const std::vector<TravelProfile>& travels, int64_t layer) {
   const auto [first, end] = std::equal_range(
-      travels.begin(), travels.end(), TravelProfile{.layer = layer},
-      [](const TravelProfile& a, const TravelProfile& b) { return a.layer < b.layer; });
+      travels.begin(), travels.end(), TravelProfile{.at = {0, layer}},
+      [](const TravelProfile& a, const TravelProfile& b) { return a.at.layer < b.at.layer; });
   if (first == end) return {};
   return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
 }
@@ -247,7 +229,7 @@ Habit HabitOfLayer(const LiftLog& log, const std::vector<TravelProfile>& travels
 // Whether the original has equally low travel between the same two points of the layer.
 bool WasAsLow(const LiftLog& was, const LiftLog& is, const TravelProfile& travel, size_t kind,
               float lift) {
-  const absl::Span<const TravelProfile> travels = OfLayer(was.travels[kind], travel.layer);
+  const absl::Span<const TravelProfile> travels = OfLayer(was.travels[kind], travel.at.layer);
   const Height now = HeightOf(is, travel);
   return std::any_of(travels.begin(), travels.end(), [&](const TravelProfile& before) {
     if (before.ends != travel.ends) return false;
@@ -292,8 +274,8 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
   Habit of_layer;
   int64_t layer = -1;
   for (const TravelProfile& travel : is.lifts.travels[kind]) {
-    if (!of_print.lifts && travel.layer != layer) {
-      layer = travel.layer;
+    if (!of_print.lifts && travel.at.layer != layer) {
+      layer = travel.at.layer;
       of_layer = HabitOfLayer(was.lifts, was.lifts.travels[kind], layer);
     }
     const Habit& habit = of_print.lifts ? of_print : of_layer;
@@ -308,7 +290,7 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, travel, kind, habit.least_mm)) continue;
-    breaks.push_back({VerifyRule::kLifts, habit.least_line, travel.line, travel.layer,
+    breaks.push_back({VerifyRule::kLifts, habit.least_line, travel.at,
                       absl::StrFormat("%.2f of %.2f mm of this travel are less than %.2f mm above "
                                       "the layer, the least lift of %s",
                                       low, height.length_mm, habit.least_mm, KindText(kind))});
@@ -318,34 +300,35 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
 }  // namespace
 
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    if (layer.Ended()) return;
-    Observe(layer, layer.was(), link, false, findings.was);
-  }
-  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    if (layer.Ended()) return;
-    if (!layer.IsHidden(link)) Observe(layer, layer.is(), link, true, findings.is);
-  }
+  layer.ForEachLink([&](const LayerSide& side, uint32_t link) {
+    if (side.original || !layer.IsHidden(link)) Observe(layer, side, link, findings.Of(side));
+  });
 }
 
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (size_t kind = 0; kind < kTravelKinds; ++kind) CompareKind(was, is, kind, breaks);
+  const StatedHeights& level = was.level_heights;
+  const StatedHeights& other = was.other_heights;
   int64_t highest = 0;
-  for (const auto* map : {&was.heights.level, &was.heights.other}) {
-    for (const auto& [um, seen] : *map) highest = std::max(highest, um);
+  for (const StatedHeights* heights : {&level, &other}) {
+    for (const int64_t um : heights->um) highest = std::max(highest, um);
   }
+  const uint32_t first_line = (level.um.empty() ? other : level).first_line;
   for (const StatedHeight& stated : is.stated) {
-    bool known = was.heights.Have(stated.um, stated.level);
+    // Lifts between paths of one height are compared with their like, if there are any.
+    const bool with_other = !stated.level || level.um.empty();
+    bool known = Knows(level.um, stated.um, kSlackUm) ||
+                 (with_other && Knows(other.um, stated.um, kSlackUm));
     // On a slope that ends with its travel, shorter travel reaches less height.
     known |= stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlackUm);
     if (stated.slope > 0 && was.slopes.empty()) {
-      breaks.push_back({VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,
+      breaks.push_back({VerifyRule::kLifts, first_line, stated.at,
                         "travel rises on its way, as none does in the original"});
       continue;
     }
     if (known) continue;
     breaks.push_back(
-        {VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,
+        {VerifyRule::kLifts, first_line, stated.at,
          absl::StrFormat("travel rises to %.3f mm above the layer; none of the original does",
                          static_cast<double>(stated.um) / 1000)});
   }

@@ -101,7 +101,7 @@ void CheckLink(const LayerPair& layer, const LayerParts& had, const LinkCutter& 
   Parts own = cutter.Parts();
   std::erase_if(own, [&had](const LinkPart& part) { return had.all.Has(part); });
   const std::string what = own.empty() ? "" : NameOf(own[0]);
-  seen.new_links.push_back({std::move(missing), what, line, layer.index()});
+  seen.new_links.push_back({std::move(missing), what, {line, layer.index()}});
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ void CompareParts(const Observations& was, const Observations& is, std::vector<F
         link.missing.begin(), link.missing.end(),
         [&](const Parts& parts) { return std::all_of(parts.begin(), parts.end(), known); });
     if (fine) continue;
-    breaks.push_back({VerifyRule::kMadeOfParts, 0, link.line, link.layer,
+    breaks.push_back({VerifyRule::kMadeOfParts, 0, link.at,
                       absl::StrCat(link.what, "; no such travel of the original does so")});
   }
 }

@@ -18,16 +18,14 @@ struct OpenTravel {
 };
 
 std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
-  const TraceChunk& chunk = original ? layer.was() : layer.is();
-  const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
-  const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
+  const LayerSide& side = layer.Side(original);
   // Travel begins where the move along the path before it ends.
   const Tails tails(layer, original, true);
   std::vector<OpenTravel> travels;
-  for (uint32_t link = first; link < end && !layer.Ended(); ++link) {
-    const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+  for (uint32_t link = side.first_path; link < side.end_path && !layer.Ended(); ++link) {
+    const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
     if (moves.empty()) continue;
-    const double length = layer.OpenLengthOverWalls(chunk, link, tails.At(link));
+    const double length = layer.OpenLengthOverWalls(side.chunk, link, tails.At(link));
     if (length <= 0) continue;
     OpenTravel travel{length, moves.front().line, true};
     for (const TraceMove& move : moves) {
@@ -57,13 +55,13 @@ void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings) {
     if (travel.known) continue;
     if (longest != was.end() && travel.length_mm > longest->length_mm + kSamePointMm) {
       findings.breaks.push_back(
-          {VerifyRule::kOpenTravels, longest->line, travel.line, layer.index(),
+          {VerifyRule::kOpenTravels, longest->line, travel.line,
            absl::StrFormat("travel of %.2f mm crosses an outer wall without a retraction; the "
                            "longest such travel of the layer has %.2f mm",
                            travel.length_mm, longest->length_mm)});
     } else if (more > 0) {
       --more;
-      findings.breaks.push_back({VerifyRule::kOpenTravels, of_layer, travel.line, layer.index(),
+      findings.breaks.push_back({VerifyRule::kOpenTravels, of_layer, travel.line,
                                  absl::StrFormat("travel crosses an outer wall without a "
                                                  "retraction, one of %d in a layer that had %d",
                                                  is.size(), was.size())});

@@ -122,7 +122,7 @@ void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
     const uint32_t before = layer.was().LineOf(layer.was().paths[was]);
     const uint32_t behind = layer.is().LineOf(layer.is().paths[is]);
     if (Winds(layer, was, is)) {
-      findings.breaks.push_back({VerifyRule::kBounds, before, behind, layer.index(),
+      findings.breaks.push_back({VerifyRule::kBounds, before, behind,
                                  "the travel behind unknown lines winds to this path"});
     }
     std::vector<TravelStep> had = StepsTo(layer.was(), was);
@@ -139,7 +139,7 @@ void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
     if (one == had.end() && other == has.end()) continue;
     findings.breaks.push_back(
         {VerifyRule::kScripts, one == had.end() ? before : one->line,
-         other == has.end() ? behind : other->line, layer.index(),
+         other == has.end() ? behind : other->line,
          absl::StrFormat("a %s behind unknown lines; the original has another %s there",
                          other == has.end() ? "path" : MoveKindName(other->kind),
                          one == had.end() ? "path" : MoveKindName(one->kind))});

@@ -27,49 +27,13 @@ void ObserveFirstTravel(const LayerPair& layer, absl::Span<const TraceMove> move
                         Observations& seen) {
   for (const TraceMove& move : moves) {
     if (!move.in_print) continue;
-    const ExtremePoint point{move.z_to_mm, move.line, layer.index()};
+    const ExtremePoint point{move.z_to_mm, {move.line, layer.index()}};
     ExtremePoint& highest = seen.first_highest;
-    if (highest.line == 0 || point.z_mm > highest.z_mm) highest = point;
+    if (highest.at.line == 0 || point.z_mm > highest.z_mm) highest = point;
     ExtremePoint& lowest = seen.first_lowest;
-    if (lowest.line == 0 || point.z_mm < lowest.z_mm) lowest = point;
+    if (lowest.at.line == 0 || point.z_mm < lowest.z_mm) lowest = point;
   }
 }
-
-// How the head goes up and down on the travel of one link.
-class LinkHeights {
- public:
-  LinkHeights(double from, double to, int64_t layer, Observations& seen)
-      : from_(from),
-        to_(to),
-        seen_(seen),
-        lowest_{0, 0, layer, RiseOf(from, to)},
-        descent_{0, 0, layer, lowest_.rise} {}
-
-  void NoteDepth(const TraceMove& move) {
-    if (move.kind != MoveKind::kTravel || move.length_mm() < kLeastMoveMm) return;
-    const auto length = static_cast<float>(move.length_mm());
-    if (move.z_to_mm < move.z_from_mm - kHeightSlackMm && length > descent_.length_mm) {
-      descent_.length_mm = length;
-      descent_.line = move.line;
-    }
-    const auto above = static_cast<float>(move.z_to_mm - std::max(from_, to_));
-    if (above >= lowest_.above_mm) return;
-    lowest_.above_mm = above;
-    lowest_.line = move.line;
-  }
-
-  void Finish() {
-    if (descent_.line != 0) seen_.descents.push_back(descent_);
-    if (lowest_.line != 0) seen_.lowest.push_back(lowest_);
-  }
-
- private:
-  const double from_;
-  const double to_;
-  Observations& seen_;
-  LowestTravel lowest_;
-  Descent descent_;
-};
 
 // How many moves at the beginning of `link`, which ends at another height, go on along the path.
 uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
@@ -80,37 +44,50 @@ uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
   return LayerPair::TailMoves(chunk, link - 1, pieces);
 }
 
-void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
-             Observations& seen) {
-  const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
+// How the head goes up and down on the travel of one link.
+void Observe(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen) {
+  const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
   if (moves.empty()) return;
   if (!moves.front().in_print) return ObserveFirstTravel(layer, moves, seen);
-  LinkHeights heights(moves.front().z_from_mm, chunk.paths[link].z_mm, layer.index(), seen);
+  const double from = moves.front().z_from_mm;
+  const double to = side.chunk.paths[link].z_mm;
+  TravelExtreme lowest{0, {0, layer.index()}, RiseOf(from, to)};
+  TravelExtreme descent = lowest;
   // A new departure, or tail, is as high as the path before; those of the original are examples.
-  const TraceMove* departure = only_new ? DepartureOf(chunk, link) : nullptr;
-  const uint32_t tail = only_new ? TailOf(chunk, link) : 0;
+  const TraceMove* departure = side.original ? nullptr : DepartureOf(side.chunk, link);
+  const uint32_t tail = side.original ? 0 : TailOf(side.chunk, link);
   for (const TraceMove& move : moves.subspan(tail)) {
-    if (only_new && layer.IsKnown(move)) continue;
-    if (&move != departure) heights.NoteDepth(move);
+    if (!layer.Counts(side, move) || &move == departure) continue;
+    if (move.kind != MoveKind::kTravel || move.length_mm() < kLeastMoveMm) continue;
+    const auto length = static_cast<float>(move.length_mm());
+    if (move.z_to_mm < move.z_from_mm - kHeightSlackMm && length > descent.mm) {
+      descent.mm = length;
+      descent.at.line = move.line;
+    }
+    const auto above = static_cast<float>(move.z_to_mm - std::max(from, to));
+    if (above >= lowest.mm) continue;
+    lowest.mm = above;
+    lowest.at.line = move.line;
   }
-  heights.Finish();
+  if (descent.at.line != 0) seen.descents.push_back(descent);
+  if (lowest.at.line != 0) seen.lowest.push_back(lowest);
 }
 
-void CompareDescents(const Observations& was, const Observations& is,
+// Of travel that connects heights alike `side` times what it does is at most what the original's
+// does.
+void CompareExtremes(const std::vector<TravelExtreme>& was, const std::vector<TravelExtreme>& is,
+                     float side, double slack_mm, const absl::FormatSpec<float, float>& what,
                      std::vector<Finding>& breaks) {
-  std::array<Descent, static_cast<size_t>(TravelRise::kCount)> known;
-  for (const Descent& descent : was.descents) {
-    Descent& longest = known[static_cast<size_t>(descent.rise)];
-    if (descent.length_mm > longest.length_mm) longest = descent;
+  std::array<TravelExtreme, static_cast<size_t>(TravelRise::kCount)> known;
+  for (const TravelExtreme& travel : was) {
+    TravelExtreme& most = known[static_cast<size_t>(travel.rise)];
+    if (side * travel.mm > side * most.mm) most = travel;
   }
-  for (const Descent& descent : is.descents) {
-    const Descent& longest = known[static_cast<size_t>(descent.rise)];
-    if (descent.length_mm <= longest.length_mm + kLeastTravelMm) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, longest.line, descent.line, descent.layer,
-         absl::StrFormat("the head descends over %.2f mm of travel; in the original over "
-                         "%.2f mm at most",
-                         descent.length_mm, longest.length_mm)});
+  for (const TravelExtreme& travel : is) {
+    const TravelExtreme& most = known[static_cast<size_t>(travel.rise)];
+    if (side * travel.mm <= side * most.mm + slack_mm) continue;
+    breaks.push_back({VerifyRule::kLifts, most.at.line, travel.at,
+                      absl::StrFormat(what, side * travel.mm, side * most.mm)});
   }
 }
 
@@ -118,8 +95,9 @@ void CompareFirstTravel(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks) {
   const auto compare = [&breaks](const ExtremePoint& had, const ExtremePoint& has, double side,
                                  const char* leads) {
-    if (had.line == 0 || has.line == 0 || side * (has.z_mm - had.z_mm) <= kHeightSlackMm) return;
-    breaks.push_back({VerifyRule::kLifts, had.line, has.line, has.layer,
+    if (had.at.line == 0 || has.at.line == 0 || side * (has.z_mm - had.z_mm) <= kHeightSlackMm)
+      return;
+    breaks.push_back({VerifyRule::kLifts, had.at.line, has.at,
                       absl::StrFormat("travel from the start script %s to Z%.3f; in the original "
                                       "to Z%.3f",
                                       leads, has.z_mm, had.z_mm)});
@@ -131,33 +109,19 @@ void CompareFirstTravel(const Observations& was, const Observations& is,
 }  // namespace
 
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    if (layer.Ended()) return;
-    Observe(layer, layer.was(), link, false, findings.was);
-  }
-  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    if (layer.Ended()) return;
-    Observe(layer, layer.is(), link, true, findings.is);
-  }
+  layer.ForEachLink(
+      [&](const LayerSide& side, uint32_t link) { Observe(layer, side, link, findings.Of(side)); });
 }
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareFirstTravel(was, is, breaks);
-  CompareDescents(was, is, breaks);
-  std::array<LowestTravel, static_cast<size_t>(TravelRise::kCount)> known;
-  for (const LowestTravel& travel : was.lowest) {
-    LowestTravel& lowest = known[static_cast<size_t>(travel.rise)];
-    if (travel.above_mm < lowest.above_mm) lowest = travel;
-  }
-  for (const LowestTravel& travel : is.lowest) {
-    const LowestTravel& lowest = known[static_cast<size_t>(travel.rise)];
-    if (travel.above_mm >= lowest.above_mm - kHeightSlackMm) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, lowest.line, travel.line, travel.layer,
-         absl::StrFormat("travel is %.3f mm below the paths that it connects; in the original "
-                         "%.3f mm at most",
-                         -travel.above_mm, -lowest.above_mm)});
-  }
+  CompareExtremes(was.descents, is.descents, 1, kLeastTravelMm,
+                  "the head descends over %.2f mm of travel; in the original over %.2f mm at most",
+                  breaks);
+  CompareExtremes(was.lowest, is.lowest, -1, kHeightSlackMm,
+                  "travel is %.3f mm below the paths that it connects; in the original %.3f mm at "
+                  "most",
+                  breaks);
 }
 
 }  // namespace traverse::gcode

@@ -29,13 +29,12 @@ const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
   return sink == moves.end() ? nullptr : &*sink;
 }
 
-// The travel in `link`; of length 0 if there is none, or if only new moves count and none is new.
-TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t link,
-                      uint32_t skipped, bool only_new) {
-  const TraceLink& traced = chunk.links[link];
-  TravelLength travel;
-  travel.layer = layer.index();
-  bool known = true;
+// The travel in `link`; of length 0 if there is none, or none that counts.
+TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t link,
+                      uint32_t skipped) {
+  const TraceChunk& chunk = side.chunk;
+  const bool hides = !side.original && layer.IsHidden(link);
+  TravelLength travel{.to_layer = chunk.links[link].new_layer, .at = {0, layer.index()}};
   const TraceMove* first = nullptr;
   const TraceMove* last = nullptr;
   const TraceMove* sink = SinkOf(chunk, link);
@@ -51,52 +50,44 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
     last = &move;
     const auto length = static_cast<float>(move.length_mm());
     travel.length_mm += length;
-    const bool open = move.open && &move != departure && !(only_new && layer.IsHidden(link));
-    if (open) travel.open_mm += length;
-    if (layer.IsKnown(move)) continue;
-    if (known) travel.line = move.line;
-    known = false;
+    if (move.open && &move != departure && !hides) travel.open_mm += length;
+    if (travel.at.line == 0 && layer.Counts(side, move)) travel.at.line = move.line;
   }
-  if (first == nullptr || traced.scripted || (only_new && known)) return {};
-  if (travel.line == 0) travel.line = first->line;
-  travel.to_layer = traced.new_layer && travel.open_mm > 0;
-  travel.retracted_to_layer = traced.new_layer && travel.length_mm > 0 && travel.open_mm == 0;
+  if (travel.at.line == 0 || chunk.links[link].scripted) return {};
   const double straight =
       sink == nullptr ? DistanceOf(first->from, last->to)
                       : DistanceOf(first->from, sink->from) + DistanceOf(sink->from, last->to);
-  const bool hides = only_new && layer.IsHidden(link);
   travel.excess_mm = hides ? 0 : travel.length_mm - static_cast<float>(straight);
   return travel;
 }
 
 void ObserveTravelsToLayers(const LayerPair& layer, const Tails& was_tails, const Tails& is_tails,
                             LayerFindings& findings) {
-  const TravelLength was = LengthOf(layer, layer.was(), layer.first_path_was(),
-                                    was_tails.At(layer.first_path_was()), false);
-  TravelLength is =
-      LengthOf(layer, layer.is(), layer.first_path_is(), is_tails.At(layer.first_path_is()), true);
-  is.was_retracted = was.retracted_to_layer;
+  const auto travel_to = [&layer](const LayerSide& side, const Tails& tails) {
+    return LengthOf(layer, side, side.first_path, tails.At(side.first_path));
+  };
+  const TravelLength was = travel_to(layer.Side(true), was_tails);
+  TravelLength is = travel_to(layer.Side(false), is_tails);
+  is.was_retracted = was.retracted_to_layer();
   is.was_retracting = was.retracts;
-  if (was.to_layer || was.retracted_to_layer) findings.was.travels_to_layers.push_back(was);
-  if (is.to_layer) findings.is.travels_to_layers.push_back(is);
+  if (was.to_layer && was.length_mm > 0) findings.was.travels_to_layers.push_back(was);
+  if (is.to_layer && is.open_mm > 0) findings.is.travels_to_layers.push_back(is);
 }
 
-void Observe(const LayerPair& layer, const Tails& tails, bool original, Observations& seen) {
-  const TraceChunk& chunk = original ? layer.was() : layer.is();
-  const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
-  const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
+void Observe(const LayerPair& layer, const LayerSide& side, const Tails& tails,
+             Observations& seen) {
   TravelLength open;
   TravelLength winding;
   TravelLength back;
-  for (uint32_t link = first; link < end; ++link) {
-    const TravelLength travel = LengthOf(layer, chunk, link, tails.At(link), !original);
+  for (uint32_t link = side.first_path; link < side.end_path; ++link) {
+    const TravelLength travel = LengthOf(layer, side, link, tails.At(link));
     if (travel.open_mm > open.open_mm) open = travel;
     if (travel.excess_mm > winding.excess_mm) winding = travel;
     if (travel.turns_back) back = travel;
   }
   if (back.turns_back) seen.travel_lengths.push_back(back);
   for (const TravelLength& travel : {open, winding}) {
-    if (travel.line != 0) seen.travel_lengths.push_back(travel);
+    if (travel.at.line != 0) seen.travel_lengths.push_back(travel);
   }
 }
 
@@ -107,13 +98,13 @@ void CompareTravelsToLayers(const Observations& was, const Observations& is,
   float longest_open = 0;
   for (const TravelLength& travel : was.travels_to_layers) {
     any_open |= travel.open_mm > kLeastTravelMm;
-    if (travel.retracted_to_layer)
+    if (travel.retracted_to_layer())
       shortest_retracted = std::min(shortest_retracted, travel.length_mm);
     if (!travel.retracts) longest_open = std::max(longest_open, travel.open_mm);
   }
   for (const TravelLength& travel : is.travels_to_layers) {
     if (travel.open_mm > kLeastTravelMm && !any_open) {
-      breaks.push_back({VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
+      breaks.push_back({VerifyRule::kOpenTravels, 0, travel.at,
                         "travel to another layer without a retraction, as the original has none"});
       continue;
     }
@@ -124,7 +115,7 @@ void CompareTravelsToLayers(const Observations& was, const Observations& is,
         travel.was_retracting && !travel.retracts && travel.open_mm > longest_open + kLeastMoveMm;
     if (on_shorter || none_as_long) {
       breaks.push_back(
-          {VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
+          {VerifyRule::kOpenTravels, 0, travel.at,
            absl::StrFormat("travel of %.2f mm to this layer without a retraction; the "
                            "original retracts there, and on %s",
                            travel.open_mm, on_shorter ? "shorter travel" : "all travel as long")});
@@ -137,8 +128,8 @@ void CompareTravelsToLayers(const Observations& was, const Observations& is,
 void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings) {
   const Tails was(layer, true);
   const Tails is(layer, false);
-  Observe(layer, was, true, findings.was);
-  Observe(layer, is, false, findings.is);
+  Observe(layer, layer.Side(true), was, findings.was);
+  Observe(layer, layer.Side(false), is, findings.is);
   ObserveTravelsToLayers(layer, was, is, findings);
 }
 
@@ -155,19 +146,19 @@ void CompareTravelLengths(const Observations& was, const Observations& is,
   }
   for (const TravelLength& travel : is.travel_lengths) {
     if (travel.turns_back && !turn_back) {
-      breaks.push_back({VerifyRule::kBounds, 0, travel.line, travel.layer,
+      breaks.push_back({VerifyRule::kBounds, 0, travel.at,
                         "travel returns to where it was, as none does in the original"});
       continue;
     }
     if (IsMuchLonger(travel.open_mm, open.open_mm)) {
-      breaks.push_back({VerifyRule::kOpenTravels, open.line, travel.line, travel.layer,
+      breaks.push_back({VerifyRule::kOpenTravels, open.at.line, travel.at,
                         absl::StrFormat("travel of %.2f mm without a retraction; the longest such "
                                         "travel in the original has %.2f mm",
                                         travel.open_mm, open.open_mm)});
     }
     if (travel.excess_mm > winding.excess_mm * kWindingFactor + kLooseMm) {
       breaks.push_back(
-          {VerifyRule::kBounds, winding.line, travel.line, travel.layer,
+          {VerifyRule::kBounds, winding.at.line, travel.at,
            absl::StrFormat(
                "travel is %.2f mm longer than a straight move; the most in the original is %.2f mm",
                travel.excess_mm, winding.excess_mm)});
