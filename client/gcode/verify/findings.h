@@ -19,7 +19,6 @@ namespace traverse::gcode {
 
 // A line of a file, and its layer.
 struct Place {
-  // NOLINTNEXTLINE(google-explicit-constructor)
   Place(uint32_t of_line = 0, int64_t of_layer = -1) : line(of_line), layer(of_layer) {}
 
   uint32_t line;  // 0: none

@@ -32,6 +32,15 @@ inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   return leaves && Retracts(*next) ? &first : nullptr;
 }
 
+// How many of the first of `moves` are no longer than `most_mm` together.
+inline uint32_t MovesWithin(absl::Span<const TraceMove> moves, double most_mm) {
+  double length = 0;
+  const auto behind = std::find_if(moves.begin(), moves.end(), [&](const TraceMove& move) {
+    return (length += move.length_mm()) > most_mm;
+  });
+  return static_cast<uint32_t>(behind - moves.begin());
+}
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
 
 namespace traverse::gcode {
@@ -43,13 +44,12 @@ class HiddenTravel {
   bool Hides(Point left, double behind_mm, Point from, Point to) const {
     if (shapes_.below.MeetsOpenWall(from, to, half_mm_)) return false;
     if (shapes_.above.MeetsOpenWall(from, to, half_mm_)) return false;
-    const double length = DistanceOf(from, to);
+    const double length = Distance(from, to);
     const double leaving = shapes_.here.IsNearWall(left, kOnPathMm) ? kLeavingMm - behind_mm : 0;
     const int steps = std::max(static_cast<int>(std::ceil(length / kStepMm)), 1);
     for (int i = 0; i <= steps; ++i) {
       const double share = static_cast<double>(i) / steps;
-      const Point at{from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share};
-      if (!HidesPoint(at, share * length < leaving)) return false;
+      if (!HidesPoint(Between(from, to, share), share * length < leaving)) return false;
     }
     return true;
   }
@@ -80,21 +80,6 @@ absl::Span<const TraceMove> TravelAlone(const TraceChunk& chunk, uint32_t link, 
     return move.kind == MoveKind::kTravel && move.open && !move.arc && level;
   });
   return alone ? moves.subspan(skipped) : absl::Span<const TraceMove>();
-}
-
-// How many of `moves` go along the path that they leave, however fast.
-size_t MovesAlong(const LayerPair& layer, const Visit& left, absl::Span<const TraceMove> moves) {
-  const uint32_t along = LayerPair::TailMoves(layer.is(), left.last_path, layer.PiecesOf(left.path),
-                                              /*any_speed=*/true);
-  const TraceMove* end = layer.is().MovesOf(left.last_path + 1).data() + along;
-  size_t count = 0;
-  double length = 0;
-  for (const TraceMove& move : moves) {
-    length += move.length_mm();
-    if (&move >= end || length > kLeavingMm) break;
-    ++count;
-  }
-  return count;
 }
 
 // Whether nobody sees `moves`, which follow each other, are no longer than `longest_mm`, and bend,
@@ -133,11 +118,13 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
     const bool begins = layer.is().paths[link].first_segment == visit.first_segment;
     if (left == nullptr || left->last_path + 1 != link || !begins) continue;
     if (layer.Outer(visit.path)) continue;
-    const uint32_t tail =
-        LayerPair::TailMoves(layer.is(), left->last_path, layer.PiecesOf(left->path));
+    const absl::Span<const Piece> pieces = layer.PiecesOf(left->path);
+    const uint32_t tail = LayerPair::TailMoves(layer.is(), left->last_path, pieces);
     const absl::Span<const TraceMove> moves = TravelAlone(layer.is(), link, tail);
     if (moves.empty()) continue;
-    const size_t along = MovesAlong(layer, *left, moves);
+    const uint32_t end_along =
+        LayerPair::TailMoves(layer.is(), left->last_path, pieces, /*any_speed=*/true);
+    const size_t along = MovesWithin(moves.first(end_along - tail), kLeavingMm);
     if (moves.size() > along + 1 && !bends) continue;
     if (Hides(shapes, moves, along, longest_mm)) links.insert(link);
   }

@@ -20,17 +20,6 @@ constexpr double kOnItMm = 0.02;
 constexpr size_t kLooks = 100'000;
 constexpr size_t kLooksPerPiece = 1000;
 
-// The point of the piece that is nearest to `p`.
-Point NearestOf(const Piece& piece, Point p) {
-  const double dx = piece.b.x - piece.a.x;
-  const double dy = piece.b.y - piece.a.y;
-  const double squared = dx * dx + dy * dy;
-  if (squared <= 0) return piece.a;
-  const double t =
-      std::clamp(((p.x - piece.a.x) * dx + (p.y - piece.a.y) * dy) / squared, 0.0, 1.0);
-  return {piece.a.x + t * dx, piece.a.y + t * dy};
-}
-
 // How far `p` lies beside the piece; a negative number if it lies before its ends, or if the piece
 // does not run along `line`.
 double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
@@ -39,7 +28,7 @@ double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
   const double dy = piece.b.y - piece.a.y;
   const double length = std::sqrt(dx * dx + dy * dy);
   const double along = dx * (line.b.x - line.a.x) + dy * (line.b.y - line.a.y);
-  if (std::abs(along) < kAlong * length * DistanceOf(line.a, line.b) || length <= 0) return -1;
+  if (std::abs(along) < kAlong * length * Distance(line.a, line.b) || length <= 0) return -1;
   const double at = (p.x - piece.a.x) * dx + (p.y - piece.a.y) * dy;
   if (at < 0 || at > length * length) return -1;
   return std::abs((p.x - piece.a.x) * dy - (p.y - piece.a.y) * dx) / length;
@@ -57,17 +46,17 @@ class LaidLayer {
   bool LiesOver(uint32_t path) {
     constexpr int kPoints = 16;
     double length = 0;
-    for (const Piece& piece : paths_[path].pieces) length += DistanceOf(piece.a, piece.b);
+    for (const Piece& piece : paths_[path].pieces) length += Distance(piece.a, piece.b);
     if (length < spacing_ / 2) return false;  // a dot lies on what it continues
     int seen = 0;
     int over = 0;
     double at = 0;
     for (const Piece& piece : paths_[path].pieces) {
-      const double own = DistanceOf(piece.a, piece.b);
+      const double own = Distance(piece.a, piece.b);
       for (; own > 0 && seen < kPoints; ++seen) {
         const double along = ((seen + 0.5) / kPoints * length - at) / own;
         if (along > 1) break;
-        over += IsOver(Along(piece, along), piece, path) ? 1 : 0;
+        over += IsOver(Between(piece.a, piece.b, along), piece, path) ? 1 : 0;
       }
       at += own;
     }
@@ -83,17 +72,13 @@ class LaidLayer {
     return pieces;
   }
 
-  static Point Along(const Piece& piece, double t) {
-    return {piece.a.x + (piece.b.x - piece.a.x) * t, piece.a.y + (piece.b.y - piece.a.y) * t};
-  }
-
   // The distance between solid lines that lie side by side: the median, by filament.
   double UsualSpacing() {
     constexpr double kPoints = 400;
     double filament = 0;
     for (const LaidPath& path : paths_) {
       for (const Piece& piece : path.pieces) {
-        if (path.solid) filament += DistanceOf(piece.a, piece.b) * path.filament_per_mm;
+        if (path.solid) filament += Distance(piece.a, piece.b) * path.filament_per_mm;
       }
     }
     std::vector<double> distances;
@@ -102,10 +87,11 @@ class LaidLayer {
     uint32_t index = 0;  // of the piece, in the tree
     for (const LaidPath& path : paths_) {
       for (const Piece& piece : path.pieces) {
-        const double own = DistanceOf(piece.a, piece.b) * path.filament_per_mm;
+        const double own = Distance(piece.a, piece.b) * path.filament_per_mm;
         if (path.solid && own > 0) {
           for (; next < seen + own; next += filament / kPoints) {
-            const double found = BesideEarlier(Along(piece, (next - seen) / own), piece, index);
+            const double found =
+                BesideEarlier(Between(piece.a, piece.b, (next - seen) / own), piece, index);
             if (found < kWidestMm) distances.push_back(found);
           }
           seen += own;
@@ -149,7 +135,7 @@ class LaidLayer {
   // on one.
   bool IsOver(Point p, const Piece& line, uint32_t path) {
     const double reach = kTouch * spacing_;
-    const double length = DistanceOf(line.a, line.b);
+    const double length = Distance(line.a, line.b);
     const Point along{(line.b.x - line.a.x) / length, (line.b.y - line.a.y) / length};
     Sides sides{reach, reach, reach, reach};
     tree_.ForEachNear(p, p, reach, [&](uint32_t i) {
@@ -163,8 +149,8 @@ class LaidLayer {
   }
 
   static void Include(const Piece& other, Point p, Point along, Sides& sides) {
-    const Point nearest = NearestOf(other, p);
-    const double distance = DistanceOf(p, nearest);
+    const Point nearest = NearestTo(p, other.a, other.b);
+    const double distance = Distance(p, nearest);
     if (distance <= kOnItMm) {
       sides = {0, 0, 0, 0};
       return;
@@ -181,7 +167,7 @@ class LaidLayer {
     include(aside, sides.left, sides.right);
     // A line that it goes on from is not one that it crosses.
     const double turn = along.x * (other.b.y - other.a.y) - along.y * (other.b.x - other.a.x);
-    if (std::abs(turn) < kOblique * DistanceOf(other.a, other.b)) return;
+    if (std::abs(turn) < kOblique * Distance(other.a, other.b)) return;
     include(ahead, sides.ahead, sides.behind);
   }
 
@@ -198,7 +184,7 @@ double UsualFlow(const std::vector<LaidPath>& paths) {
   for (const LaidPath& path : paths) {
     if (!path.solid) continue;
     double length = 0;
-    for (const Piece& piece : path.pieces) length += DistanceOf(piece.a, piece.b);
+    for (const Piece& piece : path.pieces) length += Distance(piece.a, piece.b);
     flows.emplace_back(path.filament_per_mm, path.filament_per_mm * length);
     left += flows.back().second;
   }

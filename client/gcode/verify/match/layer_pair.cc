@@ -39,7 +39,7 @@ double FlowOf(const TracePath& path) {
 // Of a very short move rounding tells no more than that it does not lead back.
 bool GoesStraightOn(const TraceMove& move, const Piece& last) {
   const double length = move.length_mm();
-  const double before = DistanceOf(last.a, last.b);
+  const double before = Distance(last.a, last.b);
   if (length <= 0 || before <= 0) return false;
   const double dot = (move.to.x - move.from.x) * (last.b.x - last.a.x) +
                      (move.to.y - move.from.y) * (last.b.y - last.a.y);
@@ -200,20 +200,15 @@ bool LayerPair::IsInside(uint32_t path, const PieceTree& loops) const {
   double beside = 0;
   for (size_t i = 0; i < pieces.size(); i += step) {
     const Piece& piece = pieces[i];
-    const double length = DistanceOf(piece.a, piece.b);
+    const double length = Distance(piece.a, piece.b);
     if (length <= 0) continue;
     const Point middle{(piece.a.x + piece.b.x) / 2, (piece.a.y + piece.b.y) / 2};
     const Point right{(piece.b.y - piece.a.y) / length, (piece.a.x - piece.b.x) / length};
     const Point from{middle.x + 0.02 * right.x, middle.y + 0.02 * right.y};
     const Point to{middle.x + kWallsApartMm * right.x, middle.y + kWallsApartMm * right.y};
-    bool found = false;
-    loops.ForEachAlong(from, to, [&](uint32_t other) {
-      const Piece& p = loops.pieces()[other];
-      found = p.path != path && PiecesCross(from, to, p.a, p.b);
-      return !found;
-    });
     along += length;
-    if (found) beside += length;
+    const auto of_other = [path](const Piece& other) { return other.path != path; };
+    if (loops.AnyAcross(from, to, of_other)) beside += length;
   }
   return beside * 2 > along;
 }
@@ -306,50 +301,39 @@ LayerPair::Travel LayerPair::TravelOf(const TraceChunk& chunk, uint32_t link, bo
     const double to = std::clamp(travel.length_mm - cut - at, 0.0, own);
     at += own;
     if (to <= from) continue;
-    const auto point = [move, own](double t) {
-      return Point{move->from.x + (move->to.x - move->from.x) * t / own,
-                   move->from.y + (move->to.y - move->from.y) * t / own};
-    };
-    travel.moves.emplace_back(point(from), point(to));
+    travel.moves.push_back(
+        {Between(move->from, move->to, from / own), Between(move->from, move->to, to / own)});
   }
   return travel;
+}
+
+bool LayerPair::CrossesWalls(const Travel& travel) const {
+  return std::any_of(travel.moves.begin(), travel.moves.end(),
+                     [this](const Piece& move) { return MeetsOuterWall(move.a, move.b); });
 }
 
 double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {
   if (outer_walls_.empty()) return 0;
   const Travel travel = TravelOf(chunk, link, open, 0);
-  const bool meets =
-      std::any_of(travel.moves.begin(), travel.moves.end(),
-                  [this](const auto& move) { return MeetsOuterWall(move.first, move.second); });
-  return meets ? travel.length_mm : 0;
+  return CrossesWalls(travel) ? travel.length_mm : 0;
 }
 
 double LayerPair::OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link,
                                       uint32_t skipped) const {
-  if (outer_walls_.empty()) return 0;
   const Travel travel = TravelOf(chunk, link, true, skipped);
-  const bool meets =
-      std::any_of(travel.moves.begin(), travel.moves.end(),
-                  [this](const auto& move) { return MeetsOuterWall(move.first, move.second); });
-  return meets || TouchesWall(outer_walls_, travel.moves) ? travel.length_mm : 0;
+  const bool meets = CrossesWalls(travel) || TouchesWall(outer_walls_, travel.moves);
+  return meets ? travel.length_mm : 0;
 }
 
 bool LayerPair::CrossesOuterWall(Point a, Point b) const {
-  const double length = DistanceOf(a, b);
+  const double length = Distance(a, b);
   if (length <= 0) return false;
   const double share = std::min(kEndSlackMm / length, 0.2);
-  const Point cut{(b.x - a.x) * share, (b.y - a.y) * share};
-  return MeetsOuterWall({a.x + cut.x, a.y + cut.y}, {b.x - cut.x, b.y - cut.y});
+  return MeetsOuterWall(Between(a, b, share), Between(b, a, share));
 }
 
 bool LayerPair::MeetsOuterWall(Point a, Point b) const {
-  bool meets = false;
-  outer_walls_.ForEachAlong(a, b, [&](uint32_t i) {
-    const Piece& wall = outer_walls_.pieces()[i];
-    meets = PiecesCross(a, b, wall.a, wall.b);
-    return !meets;
-  });
-  return meets;
+  return outer_walls_.AnyAcross(a, b, [](const Piece&) { return true; });
 }
 
 }  // namespace traverse::gcode

@@ -139,11 +139,12 @@ class LayerPair {
  private:
   // The travel of `link` behind `skipped` moves, without its ends, and its length with them.
   struct Travel {
-    std::vector<std::pair<Point, Point>> moves;
+    std::vector<Piece> moves;
     double length_mm = 0;
   };
   Travel TravelOf(const TraceChunk& chunk, uint32_t link, bool open, uint32_t skipped) const;
 
+  bool CrossesWalls(const Travel& travel) const;
   bool MeetsOuterWall(Point a, Point b) const;
 
   struct Facts {

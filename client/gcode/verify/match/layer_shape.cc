@@ -27,6 +27,7 @@ LayerShape::LayerShape(const LayerPair& layer) {
   z_mm_ = was.paths[layer.first_path_was()].z_mm;
   one_tool_ = UsesOneTool(layer);
   std::vector<Piece> walls;
+  std::vector<Piece> open_walls;
   double filament = 0;
   double length = 0;
   double rise = 0;  // of all pieces of rounds_
@@ -36,13 +37,16 @@ LayerShape::LayerShape(const LayerPair& layer) {
     length += was.paths[path].length_mm;
     const absl::Span<const Piece> pieces = layer.PiecesOf(path);
     walls.insert(walls.end(), pieces.begin(), pieces.end());
-    closed_.resize(walls.size(), layer.Closed(path));
-    if (!layer.Closed(path) || pieces.empty()) continue;
+    if (!layer.Closed(path)) {
+      open_walls.insert(open_walls.end(), pieces.begin(), pieces.end());
+      continue;
+    }
     rounds_.insert(rounds_.end(), pieces.begin(), pieces.end());
     rounds_.push_back({pieces.back().b, pieces.front().a, path});
   }
   filament_per_mm_ = length > 0 ? filament / length : 0;
   walls_ = PieceTree(std::move(walls));
+  open_walls_ = PieceTree(std::move(open_walls));
   if (rounds_.empty()) return;
   double high_y = rounds_[0].a.y;
   low_y_ = high_y;
@@ -77,22 +81,14 @@ bool LayerShape::IsWithin(Point p) const {
 }
 
 bool LayerShape::IsNearWall(Point p, double reach) const {
-  bool near = false;
-  walls_.ForEachNear(p, p, reach, [&](uint32_t i) {
-    near = DistanceToPiece(p, walls_.pieces()[i].a, walls_.pieces()[i].b) < reach;
-    return !near;
-  });
-  return near;
+  return walls_.AnyNear(
+      p, p, reach, [&](const Piece& wall) { return DistanceToPiece(p, wall.a, wall.b) < reach; });
 }
 
 bool LayerShape::MeetsOpenWall(Point a, Point b, double reach) const {
-  bool meets = false;
-  walls_.ForEachNear(a, b, reach, [&](uint32_t i) {
-    const Piece& wall = walls_.pieces()[i];
-    meets = !closed_[i] && DistanceOfPieces(a, b, wall.a, wall.b) < reach;
-    return !meets;
+  return open_walls_.AnyNear(a, b, reach, [&](const Piece& wall) {
+    return DistanceOfPieces(a, b, wall.a, wall.b) < reach;
   });
-  return meets;
 }
 
 }  // namespace traverse::gcode

@@ -39,7 +39,7 @@ class LayerShape {
   bool one_tool_ = true;
   double filament_per_mm_ = 0;
   PieceTree walls_;
-  std::vector<bool> closed_;   // [piece of walls_]
+  PieceTree open_walls_;       // those of them that are not closed
   std::vector<Piece> rounds_;  // closed walls, with what closes them
   double low_y_ = 0;
   double row_mm_ = 1;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <list>
 #include <numeric>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
@@ -30,23 +30,13 @@ constexpr double kRoundedFilamentShare = 0.02;
 // Both sides are sums of integers of 1e-6.
 constexpr double kSameFilamentMm = 1.5e-6;
 
-uint32_t DepositsOf(const TraceChunk& chunk, const TraceSection& section) {
-  return chunk.paths[section.end_path - 1].end_segment -
-         chunk.paths[section.first_path].first_segment;
-}
-
 // They differ in number, or in what they are.
-bool DepositsDiffer(const TraceChunk& a, const TraceSection& of_a, const TraceChunk& b,
-                    const TraceSection& of_b) {
-  const auto sum = [](const TraceChunk& chunk, const TraceSection& section) {
-    uint64_t all = 0;
-    const uint32_t first = chunk.paths[section.first_path].first_segment;
-    for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
-      all += chunk.segments[first + s].digest;
-    }
-    return all;
+bool DepositsDiffer(absl::Span<const TraceSegment> a, absl::Span<const TraceSegment> b) {
+  const auto sum = [](absl::Span<const TraceSegment> deposits) {
+    return std::accumulate(deposits.begin(), deposits.end(), uint64_t{0},
+                           [](uint64_t all, const TraceSegment& one) { return all + one.digest; });
   };
-  return DepositsOf(a, of_a) != DepositsOf(b, of_b) || sum(a, of_a) != sum(b, of_b);
+  return a.size() != b.size() || sum(a) != sum(b);
 }
 
 // A loop of the original, and the path of the other file that prints it with its gap moved.
@@ -64,53 +54,34 @@ struct MovedLoop {
 
 // The loop at `path`, if the other side begins it with segment `entry`.
 struct LoopStart {
-  uint64_t digest = 0;
   uint32_t path = 0;
   uint32_t entry = 0;
 };
 
-// Starts of loops by a digest that is printed there; passes over loops that were found.
+// Starts of loops by a digest that is printed there, in the order of the original.
 class LoopStarts {
  public:
-  void Add(const LoopStart& start) { starts_.push_back(start); }
-
-  void Sort() {
-    std::sort(starts_.begin(), starts_.end(), [](const LoopStart& a, const LoopStart& b) {
-      return std::tuple(a.digest, a.path, a.entry) < std::tuple(b.digest, b.path, b.entry);
-    });
-    next_.resize(starts_.size());
-    std::iota(next_.begin(), next_.end(), size_t{1});
-  }
+  void Add(uint64_t digest, const LoopStart& start) { starts_[digest].push_back(start); }
 
   // Shows `is_it` the starts with `digest` whose loop `is_found` does not know yet; true once it
-  // takes one.
+  // takes one. Forgets the others that it passes.
   template <typename IsFound, typename IsIt>
   bool Find(uint64_t digest, IsFound is_found, IsIt is_it) {
-    const auto first =
-        std::lower_bound(starts_.begin(), starts_.end(), digest,
-                         [](const LoopStart& a, uint64_t value) { return a.digest < value; });
+    std::list<LoopStart>& starts = starts_[digest];
     int left = kMostEqual;
-    for (size_t i = NotFound(static_cast<size_t>(first - starts_.begin()), is_found);
-         i < starts_.size() && starts_[i].digest == digest && left > 0;
-         i = NotFound(i + 1, is_found)) {
+    for (auto start = starts.begin(); start != starts.end() && left > 0;) {
+      if (is_found(start->path)) {
+        start = starts.erase(start);
+        continue;
+      }
+      if (is_it(*start++)) return true;
       --left;
-      if (is_it(starts_[i])) return true;
     }
     return false;
   }
 
  private:
-  // The first start from `i` on whose loop was not found yet. Remembers what it passes.
-  template <typename IsFound>
-  size_t NotFound(size_t i, IsFound is_found) {
-    size_t end = i;
-    while (end < starts_.size() && is_found(starts_[end].path)) end = next_[end];
-    while (i < end) i = std::exchange(next_[i], end);
-    return end;
-  }
-
-  std::vector<LoopStart> starts_;
-  std::vector<size_t> next_;  // [start], where to look next if its loop was found
+  absl::flat_hash_map<uint64_t, std::list<LoopStart>> starts_;
 };
 
 class SectionGaps {
@@ -123,20 +94,18 @@ class SectionGaps {
         found_(was.end_path - was.first_path, false) {
     for (uint32_t p = was.first_path; p < was.end_path; ++p) {
       const TracePath& path = original.paths[p];
-      const bool gap = DistanceOf(path.start, original.EndOf(path)) > kSameSpotMm;
+      const bool gap = Distance(path.start, original.EndOf(path)) > kSameSpotMm;
       if (!gap || !IsClosed(original, p)) continue;
       for (uint32_t s = path.first_segment + 1; s < path.end_segment; ++s) {
-        starts_.Add({original.segments[s].digest, p, s - path.first_segment});
+        starts_.Add(original.segments[s].digest, {p, s - path.first_segment});
       }
       // If the other begins with the last segment and that goes on, the next one is the first that
       // is the same.
       if (path.size() < 3) continue;
-      onward_starts_.Add({original.segments[path.first_segment].digest, p, path.size() - 1});
+      onward_starts_.Add(original.segments[path.first_segment].digest, {p, path.size() - 1});
     }
-    starts_.Sort();
-    onward_starts_.Sort();
-    CountDeposits(optimised, is, 1);
-    CountDeposits(original, was, -1);
+    for (const TraceSegment& segment : optimised.SegmentsOf(is)) ++surplus_[segment.digest];
+    for (const TraceSegment& segment : original.SegmentsOf(was)) --surplus_[segment.digest];
   }
 
   // The loop that path `other` prints, or ends with, if it is one that takes its gap along. Each is
@@ -175,13 +144,6 @@ class SectionGaps {
     return found ? loop : std::nullopt;
   }
 
-  void CountDeposits(const TraceChunk& chunk, const TraceSection& section, int by) {
-    const uint32_t first = chunk.paths[section.first_path].first_segment;
-    for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
-      surplus_[chunk.segments[first + s].digest] += by;
-    }
-  }
-
   // How many more of this segment the other has: where the original prints loops one upon the other
   // that begin at different points, one looks like another one that was moved.
   int64_t SurplusOf(uint32_t segment) const {
@@ -218,7 +180,7 @@ class SectionGaps {
     const TracePath& was = original_.paths[loop.path];
     const TracePath& is = optimised_.paths[loop.other];
     const uint32_t closing = loop.closing - loop.first;
-    const auto same_place = [](Point a, Point b) { return DistanceOf(a, b) <= kSameSpotMm; };
+    const auto same_place = [](Point a, Point b) { return Distance(a, b) <= kSameSpotMm; };
     if (!same_place(optimised_.StartOf(is, loop.first),
                     original_.StartOf(was, was.first_segment + loop.entry))) {
       return false;
@@ -261,13 +223,13 @@ std::string FaultOf(const TraceChunk& original, const TraceChunk& optimised,
   const TracePath& is = optimised.paths[loop.other];
   const auto rate = [&](uint32_t segment) {
     return original.segments[segment].filament_mm /
-           DistanceOf(original.StartOf(was, segment), original.segments[segment].end);
+           Distance(original.StartOf(was, segment), original.segments[segment].end);
   };
   const uint32_t shorter = was.first_segment + loop.entry - 1;
   const TraceSegment& whole = original.segments[shorter];
   const TraceSegment& cut = optimised.segments[is.end_segment - 1];
-  const double gap = DistanceOf(original.EndOf(was), was.start);
-  const double left = DistanceOf(cut.end, whole.end);
+  const double gap = Distance(original.EndOf(was), was.start);
+  const double left = Distance(cut.end, whole.end);
   const double off = DistanceToPiece(cut.end, original.StartOf(was, shorter), whole.end);
   if (off > kRoundedMm || std::abs(left - gap) > kRoundedMm) {
     return absl::StrFormat(
@@ -338,8 +300,10 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
               const WorkLimit& limit) {
   const TraceSection& was = original.sections[section];
   const TraceSection& is = optimised.sections[section];
-  if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) return;
-  if (!DepositsDiffer(original, was, optimised, is)) return;
+  const absl::Span<const TraceSegment> deposits_was = original.SegmentsOf(was);
+  const absl::Span<const TraceSegment> deposits_is = optimised.SegmentsOf(is);
+  if (was.index != is.index || deposits_is.size() < deposits_was.size()) return;
+  if (!DepositsDiffer(deposits_was, deposits_is)) return;
   SectionGaps of_section(original, was, optimised, is);
   // Once more for loops of one place that have changed their starts with each other.
   const uint32_t paths = is.end_path - is.first_path;

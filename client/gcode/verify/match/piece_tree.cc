@@ -23,17 +23,16 @@ PieceTree::PieceTree(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 
 std::vector<PieceTree::Part> PieceTree::PartsOfPieces() const {
   double length = 0;
-  for (const Piece& piece : pieces_) length += DistanceOf(piece.a, piece.b);
+  for (const Piece& piece : pieces_) length += Distance(piece.a, piece.b);
   const double most = kPartsOfPiece * static_cast<double>(pieces_.size()) + kPartsAlways;
   const double part_mm = std::max(kPartMm, length / most);
   std::vector<Part> parts;
   for (uint32_t i = 0; i < pieces_.size(); ++i) {
     const auto& [a, b, path] = pieces_[i];
-    const double count = std::clamp(std::ceil(DistanceOf(a, b) / part_mm), 1.0, most);
+    const double count = std::clamp(std::ceil(Distance(a, b) / part_mm), 1.0, most);
     Point at = a;
     for (double k = 1; k <= count; ++k) {
-      const double t = k / count;
-      const Point next = k < count ? Point{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t} : b;
+      const Point next = k < count ? Between(a, b, k / count) : b;
       parts.push_back({at, next, i});
       at = next;
     }

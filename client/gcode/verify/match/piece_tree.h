@@ -36,11 +36,24 @@ class PieceTree {
         });
   }
 
-  // The same for all that cross the line (PiecesCross).
-  template <typename Visit>
-  void ForEachAlong(Point a, Point b, Visit visit) const {
+  // Whether found(piece) is true for one of those.
+  template <typename Found>
+  bool AnyNear(Point a, Point b, double reach, Found found) const {
+    bool any = false;
+    ForEachNear(a, b, reach, [&](uint32_t i) {
+      any = found(pieces_[i]);
+      return !any;
+    });
+    return any;
+  }
+
+  // Whether counts(piece) is true for one that crosses the line (PiecesCross).
+  template <typename Counts>
+  bool AnyAcross(Point a, Point b, Counts counts) const {
     constexpr double kRoundingMm = 1e-6;
-    ForEachNear(a, b, kRoundingMm, visit);
+    return AnyNear(a, b, kRoundingMm, [&](const Piece& piece) {
+      return counts(piece) && PiecesCross(a, b, piece.a, piece.b);
+    });
   }
 
   // Nodes are numbered from 0, each before those within it. One that has others within it has two:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
@@ -20,7 +21,7 @@ double Side(Point a, Point b, Point p) {
 
 void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
                std::vector<Piece>& pieces) {
-  const double radius = DistanceOf(from, arc.center);
+  const double radius = Distance(from, arc.center);
   const double begin = std::atan2(from.y - arc.center.y, from.x - arc.center.x);
   const double end = std::atan2(to.y - arc.center.y, to.x - arc.center.x);
   double sweep = arc.clockwise ? begin - end : end - begin;
@@ -42,19 +43,18 @@ void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
 
 }  // namespace
 
-double DistanceToPiece(Point p, Point a, Point b) {
+Point NearestTo(Point p, Point a, Point b) {
   const double dx = b.x - a.x;
   const double dy = b.y - a.y;
   const double squared = dx * dx + dy * dy;
-  if (squared <= 0) return DistanceOf(p, a);
-  const double t = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0);
-  return DistanceOf(p, {a.x + t * dx, a.y + t * dy});
+  if (squared <= 0) return a;
+  return Between(a, b, std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0));
 }
 
 bool PiecesCross(Point a, Point b, Point c, Point d) {
   // What is so near to the line lies on it, and counts as on one side of it.
   constexpr double kOnLineMm = 1e-7;
-  const double on_line = kOnLineMm * DistanceOf(a, b);
+  const double on_line = kOnLineMm * Distance(a, b);
   if ((Side(a, b, c) < -on_line) == (Side(a, b, d) < -on_line)) return false;
   const double a_side = Side(c, d, a);
   const double b_side = Side(c, d, b);
@@ -104,17 +104,16 @@ void LeaveOutCrowds(std::vector<Piece>& pieces) {
   // They are looked for at each millimeter along the pieces, but at no more than so many places.
   const double most = 8.0 * static_cast<double>(pieces.size()) + (1 << 16);
   double length = 0;
-  for (const Piece& piece : pieces) length += DistanceOf(piece.a, piece.b);
+  for (const Piece& piece : pieces) length += Distance(piece.a, piece.b);
   const double step_mm = std::max(1.0, length / most);
   absl::flat_hash_map<std::pair<double, double>, uint32_t> pieces_at;  // by square millimeter
   std::erase_if(pieces, [&](const Piece& piece) {
-    const double steps = std::ceil(DistanceOf(piece.a, piece.b) / step_mm);
+    const double steps = std::ceil(Distance(piece.a, piece.b) / step_mm);
     bool crowded = false;
     std::pair<double, double> last(NAN, NAN);
     for (double step = 0; step <= steps; ++step) {
-      const double t = steps > 0 ? step / steps : 0;
-      const std::pair here(std::floor(piece.a.x + (piece.b.x - piece.a.x) * t),
-                           std::floor(piece.a.y + (piece.b.y - piece.a.y) * t));
+      const Point at = Between(piece.a, piece.b, steps > 0 ? step / steps : 0);
+      const std::pair here(std::floor(at.x), std::floor(at.y));
       if (here != last) crowded |= ++pieces_at[here] > kMost;
       last = here;
     }

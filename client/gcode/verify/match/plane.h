@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_PLANE_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_PLANE_H_
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -11,14 +10,16 @@
 
 namespace traverse::gcode {
 
-inline double DistanceOf(Point a, Point b) {
-  const double dx = b.x - a.x;
-  const double dy = b.y - a.y;
-  return std::sqrt(dx * dx + dy * dy);
+// The point that lies `share` of the way from `a` to `b`.
+inline Point Between(Point a, Point b, double share) {
+  return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share};
 }
 
+// The point of the straight line between `a` and `b` that is nearest to `p`.
+Point NearestTo(Point p, Point a, Point b);
+
 // From `p` to the straight line between `a` and `b`.
-double DistanceToPiece(Point p, Point a, Point b);
+inline double DistanceToPiece(Point p, Point a, Point b) { return Distance(p, NearestTo(p, a, b)); }
 
 // Between two straight lines; 0 if they cross.
 double DistanceOfPieces(Point a, Point b, Point c, Point d);

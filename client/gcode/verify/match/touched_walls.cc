@@ -20,9 +20,9 @@ constexpr double kAwayMm = 0.5;
 class WallsAtEnd {
  public:
   // `moves` begin at the end.
-  WallsAtEnd(const PieceTree& walls, std::vector<std::pair<Point, Point>> moves)
+  WallsAtEnd(const PieceTree& walls, std::vector<Piece> moves)
       : walls_(walls), moves_(std::move(moves)) {
-    ForEachNear(moves_.front().first, [&](uint32_t path, double mm) {
+    ForEachNear(moves_.front().a, [&](uint32_t path, double mm) {
       WallHere& wall = here_[path];
       wall.end_mm = std::min(wall.end_mm, mm);
     });
@@ -37,7 +37,7 @@ class WallsAtEnd {
     const WallHere& found = here->second;
     if (!found.left || found.left_on > move) return false;
     if (found.left_on < move) return true;
-    return DistanceOfPieces(moves_[move].first, found.left_at, wall.a, wall.b) >= kAwayMm;
+    return DistanceOfPieces(moves_[move].a, found.left_at, wall.a, wall.b) >= kAwayMm;
   }
 
  private:
@@ -71,14 +71,13 @@ class WallsAtEnd {
     for (auto& [path, wall] : here_) beside.push_back(&wall);
     size_t points = 0;
     for (size_t move = 0; move < moves_.size(); ++move) {
-      const auto& [a, b] = moves_[move];
-      const double steps = std::min(std::ceil(DistanceOf(a, b) / kStepMm), kMostSteps);
+      const auto& [a, b, path] = moves_[move];
+      const double steps = std::min(std::ceil(Distance(a, b) / kStepMm), kMostSteps);
       for (double step = 0; step <= steps && !beside.empty(); ++step) {
-        const double t = steps > 0 ? step / steps : 0;
-        const Point at{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
+        const Point at = Between(a, b, steps > 0 ? step / steps : 0);
         ++points;
-        ForEachNear(at, [&](uint32_t path, double) {
-          const auto wall = here_.find(path);
+        ForEachNear(at, [&](uint32_t near, double) {
+          const auto wall = here_.find(near);
           if (wall != here_.end()) wall->second.beside_until = points;
         });
         std::erase_if(beside, [&](WallHere* wall) {
@@ -93,35 +92,33 @@ class WallsAtEnd {
   }
 
   const PieceTree& walls_;
-  const std::vector<std::pair<Point, Point>> moves_;
+  const std::vector<Piece> moves_;
   absl::flat_hash_map<uint32_t, WallHere> here_;  // by path
   bool followed_ = false;
 };
 
-std::vector<std::pair<Point, Point>> Backwards(std::vector<std::pair<Point, Point>> moves) {
+std::vector<Piece> Backwards(std::vector<Piece> moves) {
   std::reverse(moves.begin(), moves.end());
-  for (auto& [a, b] : moves) std::swap(a, b);
+  for (Piece& move : moves) std::swap(move.a, move.b);
   return moves;
 }
 
 }  // namespace
 
-bool TouchesWall(const PieceTree& walls, const std::vector<std::pair<Point, Point>>& moves) {
+bool TouchesWall(const PieceTree& walls, const std::vector<Piece>& moves) {
   if (moves.empty()) return false;
   WallsAtEnd begin(walls, moves);
   WallsAtEnd end(walls, Backwards(moves));
-  bool touches = false;
-  for (size_t m = 0; m < moves.size() && !touches; ++m) {
-    const auto& [a, b] = moves[m];
-    walls.ForEachNear(a, b, kTouchMm, [&, a = a, b = b, m](uint32_t p) {
-      const Piece& wall = walls.pieces()[p];
-      const double mm = DistanceOfPieces(a, b, wall.a, wall.b);
-      touches =
-          mm < kTouchMm && begin.IsAway(wall, m, mm) && end.IsAway(wall, moves.size() - 1 - m, mm);
-      return !touches;
+  for (size_t m = 0; m < moves.size(); ++m) {
+    const Piece& move = moves[m];
+    const bool touches = walls.AnyNear(move.a, move.b, kTouchMm, [&](const Piece& wall) {
+      const double mm = DistanceOfPieces(move.a, move.b, wall.a, wall.b);
+      return mm < kTouchMm && begin.IsAway(wall, m, mm) &&
+             end.IsAway(wall, moves.size() - 1 - m, mm);
     });
+    if (touches) return true;
   }
-  return touches;
+  return false;
 }
 
 }  // namespace traverse::gcode

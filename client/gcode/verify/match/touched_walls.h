@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TOUCHED_WALLS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TOUCHED_WALLS_H_
 
-#include <utility>
 #include <vector>
 
 #include "client/gcode/verify/match/piece_tree.h"
@@ -13,7 +12,7 @@ namespace traverse::gcode {
 // True if the moves, which follow each other, come right over one of the walls, and nearer to it
 // than each end; or back to it, after they were away from that of an end. So travel along a wall
 // does not touch it. Takes time for each point along the travel, and for the pieces near that.
-bool TouchesWall(const PieceTree& walls, const std::vector<std::pair<Point, Point>>& moves);
+bool TouchesWall(const PieceTree& walls, const std::vector<Piece>& moves);
 
 }  // namespace traverse::gcode
 

@@ -34,7 +34,7 @@ StartOfLoop StartAt(const TraceChunk& chunk, const TracePath& path, uint32_t ent
   const bool closes = segment + 1 == path.end_segment;
   const Point next = closes ? path.start : chunk.segments[segment].end;
   return {at, DirectionOf(at, next), DirectionOf(at, chunk.StartOf(path, before)),
-          DistanceOf(at, next)};
+          Distance(at, next)};
 }
 
 // The open move with which travel from the path begins, if it is so short; else nothing.
@@ -56,28 +56,27 @@ Point TurnedEnd(const TraceChunk& was, const Visit& visit, Point departed) {
   const double share = TurnOf(had.first, direction, left) / TurnOf(had.first, had.last, left);
   const double turned = share * TurnOf(has.first, has.last, left);
   const double leads = has.first + (left ? turned : -turned);
-  const double mm = std::min(DistanceOf(had.at, departed), has.first_mm);
+  const double mm = std::min(Distance(had.at, departed), has.first_mm);
   return {has.at.x + mm * std::cos(leads), has.at.y + mm * std::sin(leads)};
 }
 
 }  // namespace
 
-TurnedDepartures::TurnedDepartures(const LayerPair& layer) : is_(layer.is()) {
+absl::flat_hash_set<uint32_t> TurnedDepartures(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
+  absl::flat_hash_set<uint32_t> links;
   for (const Visit& visit : layer.visits()) {
     const bool moved = visit.forward && visit.entry > 0 && layer.Closed(visit.path);
     if (!moved || visit.segments != was.paths[visit.path].size()) continue;
-    const TraceMove* departs = ShortMoveFrom(was, visit.path + 1);
-    if (departs == nullptr || !layer.EndsPath(visit)) continue;
-    ends_[visit.last_path + 1] = TurnedEnd(was, visit, departs->to);
+    const TraceMove* had = ShortMoveFrom(was, visit.path + 1);
+    if (had == nullptr || !layer.EndsPath(visit)) continue;
+    const uint32_t link = visit.last_path + 1;
+    const TraceMove* has = ShortMoveFrom(layer.is(), link);
+    const bool turned =
+        has != nullptr && Distance(has->to, TurnedEnd(was, visit, had->to)) < kSamePointMm;
+    if (turned) links.insert(link);
   }
-}
-
-bool TurnedDepartures::LeadsAway(uint32_t link) const {
-  const auto end = ends_.find(link);
-  if (end == ends_.end()) return false;
-  const TraceMove* departs = ShortMoveFrom(is_, link);
-  return departs != nullptr && DistanceOf(departs->to, end->second) < kSamePointMm;
+  return links;
 }
 
 }  // namespace traverse::gcode

@@ -5,26 +5,15 @@
 
 #include <cstdint>
 
-#include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/match/layer_pair.h"
 
 namespace traverse::gcode {
 
-// Those of the layer's loops.
-class TurnedDepartures {
- public:
-  explicit TurnedDepartures(const LayerPair& layer);
-
-  // Whether `link` of the other file begins with the move by which the original leaves the loop
-  // before it, turned along with the loop's start: it divides the angle between the loop's first
-  // and last segment as it did, on the same side, and is as long as it was, or as the first segment
-  // there.
-  bool LeadsAway(uint32_t link) const;
-
- private:
-  const TraceChunk& is_;
-  absl::flat_hash_map<uint32_t, Point> ends_;  // by link of the other file
-};
+// The links of the other file that begin with the move by which the original leaves the loop before
+// them, turned along with the loop's start: it divides the angle between the loop's first and last
+// segment as it did, on the same side, and is as long as it was, or as the first segment there.
+absl::flat_hash_set<uint32_t> TurnedDepartures(const LayerPair& layer);
 
 }  // namespace traverse::gcode
 

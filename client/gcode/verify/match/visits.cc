@@ -117,8 +117,8 @@ class Matcher {
 
   bool IsForward(uint32_t s, Point start) const {
     const TracePath& path = original_.paths[path_of_[s - first_]];
-    const double to_start = DistanceOf(original_.StartOf(path, s), start);
-    return to_start <= kSameSpotMm || to_start <= DistanceOf(original_.segments[s].end, start);
+    const double to_start = Distance(original_.StartOf(path, s), start);
+    return to_start <= kSameSpotMm || to_start <= Distance(original_.segments[s].end, start);
   }
 
   // How many segments of the original follow one another from `s` on as those of path `p` do from
@@ -243,14 +243,6 @@ class Matcher {
   std::vector<Visit> visits_;
 };
 
-[[maybe_unused]] uint32_t SegmentsOf(const TraceChunk& chunk, const TraceSection& section) {
-  uint32_t segments = 0;
-  for (uint32_t path = section.first_path; path < section.end_path; ++path) {
-    segments += chunk.paths[path].size();
-  }
-  return segments;
-}
-
 }  // namespace
 
 double LoopGapMm(const TraceChunk& chunk, uint32_t path) {
@@ -265,7 +257,7 @@ double LoopGapMm(const TraceChunk& chunk, uint32_t path) {
 
 bool IsClosed(const TraceChunk& chunk, uint32_t path) {
   const TracePath& traced = chunk.paths[path];
-  const double gap = DistanceOf(traced.start, chunk.EndOf(traced));
+  const double gap = Distance(traced.start, chunk.EndOf(traced));
   return traced.size() >= 2 && !traced.joined && gap <= LoopGapMm(chunk, path) &&
          static_cast<double>(traced.length_mm) > 4 * std::max(gap, kUsualGapMm);
 }
@@ -273,7 +265,7 @@ bool IsClosed(const TraceChunk& chunk, uint32_t path) {
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
                               const TraceChunk& optimised, const TraceSection& is,
                               const WorkLimit& limit) {
-  assert(SegmentsOf(original, was) == SegmentsOf(optimised, is));
+  assert(original.SegmentsOf(was).size() == optimised.SegmentsOf(is).size());
   return Matcher(original, was, optimised, is, limit).Match();
 }
 

@@ -30,7 +30,7 @@ double BendOf(const TraceMove& before, const TraceMove& behind) {
 
 // How much longer the travel is because of the bend between the two.
 double ExcessOf(const TraceMove& before, const TraceMove& behind) {
-  return before.length_mm() + behind.length_mm() - DistanceOf(before.from, behind.to);
+  return before.length_mm() + behind.length_mm() - Distance(before.from, behind.to);
 }
 
 bool LeadsAroundAWall(const LayerPair& layer, const TraceMove& before, const TraceMove& behind) {
@@ -139,15 +139,6 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
   }
 }
 
-// How many of the first of `moves` are no longer than `most_mm` together.
-uint32_t MovesWithin(absl::Span<const TraceMove> moves, double most_mm) {
-  double length = 0;
-  const auto behind = std::find_if(moves.begin(), moves.end(), [&](const TraceMove& move) {
-    return (length += move.length_mm()) > most_mm;
-  });
-  return static_cast<uint32_t>(behind - moves.begin());
-}
-
 // Of what goes along paths of the original, however fast.
 double LongestAlong(const LayerPair& layer) {
   const Tails along(layer, true, true);
@@ -181,7 +172,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
-  const TurnedDepartures turned(layer);
+  const absl::flat_hash_set<uint32_t> turned = TurnedDepartures(layer);
   const std::optional<Departures> to_layer = DeparturesTo(layer);
   const std::optional<Departures> within =
       Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
@@ -194,7 +185,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     const uint32_t moves =
         MovesWithin(layer.is().MovesOf(link).first(along.At(link)), most + kOnPathMm);
     // How travel leaves a loop is another rule (leaving_paths.cc), there of the layer before.
-    const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.LeadsAway(link);
+    const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.contains(link);
     const uint32_t skipped = std::max({tails.At(link), moves, departs ? 1u : 0u});
     CheckLink(layer, link, skipped, first ? to_layer : within, findings);
   }

@@ -31,7 +31,7 @@ bool LeadAlike(const LayerPair& layer, const Visit& visit) {
 bool EndAlike(const LayerPair& layer, const Visit& visit) {
   const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
   const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
-  return DistanceOf(was, is) < kSamePointMm;
+  return Distance(was, is) < kSamePointMm;
 }
 
 // The moves with which travel from the path begins along it, however fast.
@@ -47,17 +47,17 @@ bool IsSideways(const TraceMove& move) { return move.sideways(); }
 // there, or, where the path ends elsewhere, one that leads neither along it nor to where that
 // move would be there.
 bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
-                  const TurnedDepartures& turned) {
+                  const absl::flat_hash_set<uint32_t>& turned) {
   const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
   if (departs == nullptr || layer.IsKnown(*departs)) return false;
   if (!same_end) {
-    if (turned.LeadsAway(visit.last_path + 1)) return false;
+    if (turned.contains(visit.last_path + 1)) return false;
     const auto along = MovesAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
     return std::none_of(along.begin(), along.end(), IsSideways);
   }
   const absl::Span<const TraceMove> had = layer.was().MovesOf(visit.path + 1);
   const auto first = std::find_if(had.begin(), had.end(), IsSideways);
-  return first == had.end() || DistanceOf(departs->to, first->to) > kSamePointMm;
+  return first == had.end() || Distance(departs->to, first->to) > kSamePointMm;
 }
 
 bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
@@ -74,7 +74,7 @@ std::optional<double> RetractsAwayBy(const TraceChunk& chunk, uint32_t link) {
     if (Retracts(move)) return mm;
     if (!move.sideways()) continue;
     if (move.kind != MoveKind::kTravel || !move.in_print) return std::nullopt;
-    mm = DistanceOf(end, move.to);
+    mm = Distance(end, move.to);
   }
   return std::nullopt;
 }
@@ -100,8 +100,8 @@ void NoteDeparture(const LayerPair& layer, uint32_t path, Observations& seen) {
 }
 
 // From the same point travel leaves a path as it did, if it retracts.
-void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepartures& turned,
-                    LayerFindings& findings) {
+void CheckDeparture(const LayerPair& layer, const Visit& visit,
+                    const absl::flat_hash_set<uint32_t>& turned, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const uint32_t link_is = visit.last_path + 1;
   const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
@@ -136,12 +136,8 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepa
 // A point of a loop, so far behind its begin.
 Point PointAlong(absl::Span<const Piece> pieces, double mm) {
   for (const Piece& piece : pieces) {
-    const double length = DistanceOf(piece.a, piece.b);
-    if (length >= mm && length > 0) {
-      const double share = mm / length;
-      return {piece.a.x + (piece.b.x - piece.a.x) * share,
-              piece.a.y + (piece.b.y - piece.a.y) * share};
-    }
+    const double length = Distance(piece.a, piece.b);
+    if (length >= mm && length > 0) return Between(piece.a, piece.b, mm / length);
     mm -= length;
   }
   return pieces.back().b;
@@ -165,14 +161,14 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   const absl::Span<const Piece> pieces = layer.PiecesOf(path);
   const absl::Span<const TraceMove> moves = was.MovesOf(path + 1);
   const Point end = was.EndOf(was.paths[path]);
-  if (was.paths[path].size() < 3 || DistanceOf(was.paths[path].start, end) > kOnPathMm)
+  if (was.paths[path].size() < 3 || Distance(was.paths[path].start, end) > kOnPathMm)
     return nullptr;
   if (moves.size() < 2) return nullptr;
   const TraceMove& first = moves.front();
   const double length = first.length_mm();
   const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
   if (!open || length <= kLeastMm || length > kLooseMm) return nullptr;
-  if (DistanceOf(PointAlong(pieces, length), first.to) > kOnPathMm) return nullptr;
+  if (Distance(PointAlong(pieces, length), first.to) > kOnPathMm) return nullptr;
   // A straight move off a small loop ends there too, but leads across it.
   if (GoesOnMm(was, path, pieces) <= length - kOnPathMm) return nullptr;
   return std::any_of(moves.begin() + 1, moves.end(), IsSideways) ? &first : nullptr;
@@ -197,7 +193,7 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
 }  // namespace
 
 void CheckDepartures(const LayerPair& layer, LayerFindings& findings) {
-  const TurnedDepartures turned(layer);
+  const absl::flat_hash_set<uint32_t> turned = TurnedDepartures(layer);
   for (const Visit& visit : layer.visits()) {
     if (layer.Ended()) return;
     if (visit.segments != layer.was().paths[visit.path].size()) continue;

@@ -75,7 +75,7 @@ const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known&
   for (const TraceMove& move : moves.first(moves.size() - (moves.empty() ? 0 : 1))) {
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) return nullptr;
     all_known &= known(move);
-    const double off = DistanceOf(move.to, end);
+    const double off = Distance(move.to, end);
     if (left && off <= kSamePointMm) return all_known ? nullptr : &move;
     left |= off > kOnPathMm;
   }
@@ -130,7 +130,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     if (had.length_mm < kLeastDepartureMm) {
       // Where the path ends elsewhere, it may cross the gap of a loop or lead back to a zigzag.
       const double gap = layer.Closed(visit.path)
-                             ? DistanceOf(was.EndOf(path), path.start) + kLeastDepartureMm
+                             ? Distance(was.EndOf(path), path.start) + kLeastDepartureMm
                              : LoopGapMm(was, visit.path);
       const bool longer = has.length_mm > (same_end ? kLeastDepartureMm : gap);
       if (longer && !has.known && has.feed == path.feed && !leads_on) {
@@ -153,7 +153,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     } else if (!layer.Closed(visit.path) &&
                GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
       report(had.line, has.line, "continues from the path to the other side, unlike the original");
-    } else if (same_end && DistanceOf(has.end, had.end) > kSamePointMm) {
+    } else if (same_end && Distance(has.end, had.end) > kSamePointMm) {
       report(had.line, has.line, "continues from the path to a different point from the original");
     }
   }

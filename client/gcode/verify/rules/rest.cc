@@ -1,7 +1,6 @@
 #include "client/gcode/verify/rules/rest.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -44,7 +43,6 @@ class IslandFinder {
 
   PrintedIslands Find() {
     JoinNear();
-    NumberIslands();
     NoteTimes();
     NotePlaces();
     NoteJoined();
@@ -129,41 +127,25 @@ class IslandFinder {
     --apart_;
   }
 
-  void NumberIslands() {
-    for (const int number : regions_.Numbered()) {
-      const auto path = static_cast<uint32_t>(island_.size());
-      island_.push_back(static_cast<uint32_t>(number));
-      if (island_.back() == found_.islands.size()) {
-        PrintedIsland& island = found_.islands.emplace_back();
-        island.begun_was = island.begun_is = std::numeric_limits<double>::infinity();
-        island.first_was = path;
-      }
-      found_.islands[island_.back()].last_was = path;
-    }
-    found_.paths = static_cast<uint32_t>(reach_.size());
-  }
-
   void NoteTimes() {
     const TraceChunk& was = layer_.was();
     const TraceChunk& is = layer_.is();
-    for (uint32_t path = 0; path < island_.size(); ++path) {
-      PrintedIsland& island = found_.islands[island_[path]];
-      const TracePath& of_was = was.paths[first_ + path];
-      if (of_was.begun_seconds < island.begun_was) {
-        island.begun_was = of_was.begun_seconds;
-        island.line_was = was.LineOf(of_was);
-      }
-      island.left_was = std::max(island.left_was, of_was.left_seconds);
+    for (const int number : regions_.Numbered()) {
+      const auto path = static_cast<uint32_t>(island_.size());
+      const TracePath& traced = was.paths[first_ + path];
+      island_.push_back(static_cast<uint32_t>(number));
+      if (island_.back() == found_.islands.size()) found_.islands.emplace_back();
+      PrintedIsland& island = found_.islands[island_.back()];
+      island.first_path = std::min(island.first_path, path);
+      island.last_path = path;
+      island.was.Include({traced.begun_seconds, traced.left_seconds, was.LineOf(traced)});
     }
     for (const Visit& visit : layer_.visits()) {
-      PrintedIsland& island = found_.islands[island_[visit.path - first_]];
       const TracePath& begins = is.paths[visit.first_path];
-      if (begins.begun_seconds < island.begun_is) {
-        island.begun_is = begins.begun_seconds;
-        island.line_is = is.LineOf(begins);
-      }
-      island.left_is = std::max(island.left_is, is.paths[visit.last_path].left_seconds);
+      found_.islands[island_[visit.path - first_]].is.Include(
+          {begins.begun_seconds, is.paths[visit.last_path].left_seconds, is.LineOf(begins)});
     }
+    found_.paths = static_cast<uint32_t>(reach_.size());
   }
 
   void NotePlaces() {
@@ -178,25 +160,14 @@ class IslandFinder {
 
   // What counts as one island is begun with the first part of it, and left with the last one.
   void NoteJoined() {
-    PrintedIsland none;
-    none.begun_was = none.begun_is = std::numeric_limits<double>::infinity();
-    none.first_was = found_.paths;
-    found_.islands.resize(found_.tree.size(), none);
+    found_.islands.resize(found_.tree.size());
     for (uint32_t node = 0; node < found_.tree.size(); ++node) {
       const PrintedIsland& part = found_.islands[node];
       PrintedIsland& whole = found_.islands[found_.tree.ParentOf(node)];
-      if (part.begun_was < whole.begun_was) {
-        whole.begun_was = part.begun_was;
-        whole.line_was = part.line_was;
-      }
-      if (part.begun_is < whole.begun_is) {
-        whole.begun_is = part.begun_is;
-        whole.line_is = part.line_is;
-      }
-      whole.left_was = std::max(whole.left_was, part.left_was);
-      whole.left_is = std::max(whole.left_is, part.left_is);
-      whole.first_was = std::min(whole.first_was, part.first_was);
-      whole.last_was = std::max(whole.last_was, part.last_was);
+      whole.was.Include(part.was);
+      whole.is.Include(part.is);
+      whole.first_path = std::min(whole.first_path, part.first_path);
+      whole.last_path = std::max(whole.last_path, part.last_path);
     }
   }
 
@@ -221,10 +192,10 @@ PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm, doub
 bool RestWatch::RestsTooShort(const PrintedIsland& below, uint64_t first_path,
                               const PrintedIsland& island) const {
   // Nothing else is printed meanwhile.
-  if (first_path + below.last_was + 1 == paths_ + island.first_was) return false;
+  if (first_path + below.last_path + 1 == paths_ + island.first_path) return false;
   const double needed =
-      kLeastShare * std::min(island.begun_was - below.left_was, least_seconds_) - kSlackSeconds;
-  return island.begun_is - below.left_is < needed;
+      kLeastShare * std::min(island.was.begun - below.was.left, least_seconds_) - kSlackSeconds;
+  return island.is.begun - below.is.left < needed;
 }
 
 void RestWatch::Take(PrintedIslands layer, int64_t index, std::vector<Finding>& breaks) {
@@ -246,12 +217,12 @@ void RestWatch::Take(PrintedIslands layer, int64_t index, std::vector<Finding>& 
       broken[two] = true;
       breaks.push_back(
           {VerifyRule::kRest,
-           island.line_was,
-           {island.line_is, index},
+           island.was.line,
+           {island.is.line, index},
            absl::StrFormat(
                "printed %.1f s after the island below; that rests %.1f s in the original"
                " where %.4g s are enough",
-               island.begun_is - below.left_is, island.begun_was - below.left_was,
+               island.is.begun - below.is.left, island.was.begun - below.was.left,
                least_seconds_)});
     };
     IslandTree::ForEachPair(under.tree, found->second.island, now->tree, number, check);

@@ -4,7 +4,9 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -16,16 +18,25 @@
 
 namespace traverse::gcode {
 
+// When a file begins to print something and when it leaves it, in seconds.
+struct PrintedTime {
+  double begun = std::numeric_limits<double>::infinity();
+  double left = 0;
+  uint32_t line = 0;  // where it begins
+
+  void Include(const PrintedTime& part) {
+    if (part.begun < begun) line = part.line;
+    begun = std::min(begun, part.begun);
+    left = std::max(left, part.left);
+  }
+};
+
 // A node of the islands of one layer, and when both files print it.
 struct PrintedIsland {
-  double begun_was = 0;
-  double left_was = 0;
-  double begun_is = 0;
-  double left_is = 0;
-  uint32_t first_was = 0;  // of the paths of the layer, in the order of the original
-  uint32_t last_was = 0;
-  uint32_t line_was = 0;  // where it begins
-  uint32_t line_is = 0;
+  PrintedTime was;
+  PrintedTime is;
+  uint32_t first_path = UINT32_MAX;  // of the layer, in the order of the original
+  uint32_t last_path = 0;
 };
 
 struct PrintedIslands {

@@ -39,13 +39,13 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
     const uint32_t begin = visit.forward ? visit.entry : (visit.entry + 1) % path.size();
     const bool balanced = context.permissions.policy == VerifyPermissions::Policy::kBalanced;
     const Point seam = PointOf(was, path, begin);
-    if (begin == 0 || (balanced && DistanceOf(seam, path.start) <= kOnPathMm)) continue;
+    if (begin == 0 || (balanced && Distance(seam, path.start) <= kOnPathMm)) continue;
     if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
     findings.breaks.push_back(
         {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,
          absl::StrFormat("the seam of this %s is %.2f mm from where it was%s",
                          std::string(PathClassName(layer.ClassOf(visit.path))),
-                         DistanceOf(seam, path.start),
+                         Distance(seam, path.start),
                          balanced ? ", and not at a sharp corner" : "")});
   }
 }

@@ -25,7 +25,7 @@ constexpr float kTellingMm = 0.3f;  // rounding is nothing compared with the fil
 // Of the angle by which the travel from `a` over `b` to `c` turns at `b`; 1 if it does not move
 // there.
 double CosineOfTurn(Point a, Point b, Point c) {
-  const double product = DistanceOf(a, b) * DistanceOf(b, c);
+  const double product = Distance(a, b) * Distance(b, c);
   if (!(product > 0)) return 1;
   return ((b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y)) / product;
 }
@@ -65,7 +65,7 @@ bool TurnsBackBetween(const TraceMove& before, const TraceMove& move,
   if (before.arc || move.arc || !TurnsBack(before.from, move.from, move.to)) return false;
   for (size_t i = 0; i < pieces.size(); ++i) {
     const Piece& next = pieces[i + 1 < pieces.size() ? i + 1 : 0];
-    if (DistanceOf(pieces[i].b, move.from) > kOnPathMm) continue;
+    if (Distance(pieces[i].b, move.from) > kOnPathMm) continue;
     if (NearlyTurnsBack(pieces[i].a, pieces[i].b, next.b)) return false;
   }
   return true;

@@ -202,6 +202,12 @@ struct TraceChunk {
   Point EndOf(const TracePath& path) const { return segments[path.end_segment - 1].end; }
   uint32_t LineOf(const TracePath& path) const { return segments[path.first_segment].line; }
 
+  absl::Span<const TraceSegment> SegmentsOf(const TraceSection& section) const {
+    const uint32_t first = paths[section.first_path].first_segment;
+    return absl::MakeConstSpan(segments).subspan(first,
+                                                 paths[section.end_path - 1].end_segment - first);
+  }
+
   // The moves of links `first` to `end` - 1.
   absl::Span<const TraceMove> MovesOfLinks(uint32_t first, uint32_t end) const {
     return absl::MakeConstSpan(moves)

@@ -43,7 +43,7 @@ std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
 }
 
 bool SamePlace(const TraceMove& a, const TraceMove& b) {
-  return DistanceOf(a.to, b.to) <= kSamePointMm && DistanceOf(a.middle, b.middle) <= kSamePointMm &&
+  return Distance(a.to, b.to) <= kSamePointMm && Distance(a.middle, b.middle) <= kSamePointMm &&
          std::abs(a.z_to_mm - b.z_to_mm) <= kHeightSlackMm;
 }
 
@@ -93,7 +93,7 @@ bool LeadsBack(const TraceChunk& chunk, uint32_t path) {
   for (uint32_t k = 0; k <= traced.size() / 2; ++k) {
     const Point one = chunk.StartOf(traced, traced.first_segment + k);
     const Point other = chunk.segments[traced.end_segment - 1 - k].end;
-    if (DistanceOf(one, other) > kSamePointMm) return false;
+    if (Distance(one, other) > kSamePointMm) return false;
   }
   return true;
 }

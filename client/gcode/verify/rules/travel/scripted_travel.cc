@@ -67,7 +67,7 @@ double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
     if (first == nullptr) first = &move;
     length += move.length_mm();
   }
-  straight_mm = first == nullptr ? 0 : DistanceOf(first->from, chunk.paths[path].start);
+  straight_mm = first == nullptr ? 0 : Distance(first->from, chunk.paths[path].start);
   return length - straight_mm;
 }
 

@@ -46,7 +46,7 @@ TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t li
     // The next path may begin where the one before it ends and a short move leads away.
     const double least_turn = last == first ? kLeastTravelMm : kLeastMoveMm;
     travel.turns_back |= last != nullptr && move.length_mm() > least_turn &&
-                         DistanceOf(move.to, last->from) < kSamePointMm;
+                         Distance(move.to, last->from) < kSamePointMm;
     last = &move;
     const auto length = static_cast<float>(move.length_mm());
     travel.length_mm += length;
@@ -54,9 +54,9 @@ TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t li
     if (travel.at.line == 0 && layer.Counts(side, move)) travel.at.line = move.line;
   }
   if (travel.at.line == 0 || chunk.links[link].scripted) return {};
-  const double straight =
-      sink == nullptr ? DistanceOf(first->from, last->to)
-                      : DistanceOf(first->from, sink->from) + DistanceOf(sink->from, last->to);
+  const double straight = sink == nullptr
+                              ? Distance(first->from, last->to)
+                              : Distance(first->from, sink->from) + Distance(sink->from, last->to);
   travel.excess_mm = hides ? 0 : travel.length_mm - static_cast<float>(straight);
   return travel;
 }

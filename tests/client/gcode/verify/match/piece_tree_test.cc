@@ -30,7 +30,7 @@ TEST(PieceTree, FindsWhatIsNear) {
     std::set<uint32_t> near;
     std::set<uint32_t> along;
     tree.ForEachNear(a, b, 1.5, [&](uint32_t index) { return near.insert(index), true; });
-    tree.ForEachAlong(a, b, [&](uint32_t index) { return along.insert(index), true; });
+    tree.AnyAcross(a, b, [&](const Piece& piece) { return along.insert(piece.path), false; });
     for (uint32_t k = 0; k < tree.pieces().size(); ++k) {
       const Piece& piece = tree.pieces()[k];
       const bool is_near = DistanceOfPieces(a, b, piece.a, piece.b) <= 1.5;
@@ -47,7 +47,7 @@ TEST(PieceTree, IsAskedForPlacesAnywhere) {
   int seen = 0;
   const auto count = [&seen](uint32_t) { return ++seen, true; };
   tree.ForEachNear({1e15, -1e15}, {1e15, 1e15}, 1, count);
-  tree.ForEachAlong({-1e15, 50}, {1e15, 50}, count);
+  tree.AnyAcross({-1e15, 50}, {1e15, 50}, [&seen](const Piece&) { return ++seen, false; });
   EXPECT_GT(seen, 0);
 }
 
@@ -66,7 +66,7 @@ std::vector<Piece> RowOfSquares(uint32_t count, double side) {
 
 int VisitedAlong(const PieceTree& tree, Point a, Point b) {
   int visited = 0;
-  tree.ForEachAlong(a, b, [&](uint32_t) { return ++visited, true; });
+  tree.AnyAcross(a, b, [&](const Piece&) { return ++visited, false; });
   return visited;
 }
 

@@ -36,7 +36,7 @@ TEST(AppendPieces, CutsArcsIntoChordsHoweverLarge) {
 
   ASSERT_GT(pieces.size(), 20u);
   for (size_t i = 0; i + 17 < pieces.size(); ++i) {
-    EXPECT_NEAR(DistanceOf(pieces[i].b, {5, 0}), 5, 1e-9);
+    EXPECT_NEAR(Distance(pieces[i].b, {5, 0}), 5, 1e-9);
   }
   EXPECT_EQ(pieces.back().b.x, 1);
   EXPECT_LE(pieces.size(), 360u + 16u) << "an arc that no printer makes has few";
