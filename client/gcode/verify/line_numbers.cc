@@ -47,9 +47,7 @@ class NumberReader {
 
   std::optional<Unnumbered> Result() {
     if (count_ == 0) return std::nullopt;
-    for (const int64_t value : {first_, step_, int64_t{unnumbered_}, int64_t{summed_}}) {
-      result_.form = Mix(result_.form, static_cast<uint64_t>(value));
-    }
+    result_.form = MixAll(0, first_, step_, unnumbered_, summed_);
     return std::move(result_);
   }
 

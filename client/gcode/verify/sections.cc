@@ -14,12 +14,10 @@ constexpr uint64_t kEndOfText = 1;
 uint64_t DigestOf(const Motion& motion) {
   // G0 and G1 are the same to what prints nothing.
   const auto number = static_cast<uint64_t>(std::max(motion.number, 1));
-  uint64_t digest = Mix(number, static_cast<uint64_t>(motion.feed));
-  for (size_t axis = 0; axis < 3; ++axis) {
-    digest = Mix(digest, static_cast<uint64_t>(motion.from[axis]));
-    digest = Mix(digest, static_cast<uint64_t>(motion.to[axis]));
-  }
-  return Mix(digest, static_cast<uint64_t>(motion.filament));
+  const std::array<Micro, 3>& from = motion.from;
+  const std::array<Micro, 3>& to = motion.to;
+  return MixAll(number, motion.feed, from[0], to[0], from[1], to[1], from[2], to[2],
+                motion.filament);
 }
 
 // A comment that says of what the next paths are, or a mark of a wipe: what it leads to is

@@ -46,6 +46,13 @@ inline uint64_t Mix(uint64_t digest, uint64_t value) {
   return z ^ (z >> 31);
 }
 
+// Mixes several of them into it, one after the other.
+template <typename... Values>
+uint64_t MixAll(uint64_t digest, Values... values) {
+  ((digest = Mix(digest, static_cast<uint64_t>(values))), ...);
+  return digest;
+}
+
 inline uint64_t DigestOf(std::string_view text) {
   uint64_t digest = 0xcbf29ce484222325u;
   for (const char c : text) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3u;

@@ -187,8 +187,7 @@ bool PrintSettings::SetByM(int number, const CommandWords& words) {
 bool PrintSettings::SetOfTool(int number, const CommandWords& words, char tool, size_t slot) {
   uint64_t value = static_cast<uint64_t>(number);
   for (char letter = 'A'; letter <= 'Z'; ++letter) {
-    if (words.Has(letter))
-      value = Mix(Mix(value, static_cast<uint64_t>(letter)), WordOr0(words, letter));
+    if (words.Has(letter)) value = MixAll(value, letter, WordOr0(words, letter));
   }
   const uint64_t of = Mix(static_cast<uint64_t>(number), WordOr0(words, tool));
   if (words.Has(tool) && !SetNamed({{{Mix(DigestOf("tool"), of)}, value}})) return false;
@@ -198,9 +197,7 @@ bool PrintSettings::SetOfTool(int number, const CommandWords& words, char tool, 
 
 // Lights; input shaping, of both axes or of those that are named.
 bool PrintSettings::SetNamedByM(int number, const CommandWords& words) {
-  const auto known = [number](uint64_t what) {
-    return Mix(Mix(DigestOf("named M"), static_cast<uint64_t>(number)), what);
-  };
+  const auto known = [number](uint64_t what) { return MixAll(DigestOf("named M"), number, what); };
   const auto value = [&words](char letter) { return WordOr0(words, letter) + 1; };
   if (number == 960 && words.OnlyFrom("SP") && words.Has('P') && words.Has('S')) {
     return SetNamed({{{known(WordOr0(words, 'S'))}, value('P')}});
@@ -338,8 +335,8 @@ void PrintSettings::Renew() {
   for (size_t i = kAccelPrint; i < kPressure; ++i) {
     path_acceleration_digest_ = Mix(path_acceleration_digest_, values_[i]);
   }
-  acceleration_digest_ = Mix(path_acceleration_digest_, values_[kAccelTravel]);
-  acceleration_digest_ = Mix(acceleration_digest_, values_[kAccelRetract]);
+  acceleration_digest_ =
+      MixAll(path_acceleration_digest_, values_[kAccelTravel], values_[kAccelRetract]);
   changed_ = false;
 }
 

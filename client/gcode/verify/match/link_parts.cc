@@ -57,8 +57,7 @@ uint64_t FormOf(const LinkPart& part) {
 uint64_t KeyOf(const LinkPart& part) {
   uint64_t digest = FormOf(part);
   for (const PartStep& step : part.steps) {
-    digest = Mix(Mix(digest, step.firmware ? 1 : 0), static_cast<uint64_t>(step.feed));
-    digest = Mix(Mix(digest, step.tool), step.spiral);
+    digest = MixAll(digest, step.firmware, step.feed, step.tool, step.spiral);
   }
   return digest;
 }

@@ -21,21 +21,14 @@ double Side(Point a, Point b, Point p) {
 
 void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
                std::vector<Piece>& pieces) {
-  const double radius = Distance(from, arc.center);
-  const double begin = std::atan2(from.y - arc.center.y, from.x - arc.center.x);
-  const double end = std::atan2(to.y - arc.center.y, to.x - arc.center.x);
-  double sweep = arc.clockwise ? begin - end : end - begin;
-  while (sweep <= 1e-9) sweep += 2 * M_PI;
-  const double step = radius > kChordMm ? 2 * std::acos(1 - kChordMm / radius) : M_PI;
+  const ArcWay way(from, to, arc);
+  const double step = way.radius() > kChordMm ? 2 * std::acos(1 - kChordMm / way.radius()) : M_PI;
   // Of an arc as large as a line is long the step is 0.
-  const double most = sweep * radius > kMostArcMm ? kMostChordsOfLong : kMostChords;
-  const int n = static_cast<int>(std::clamp(std::ceil(sweep / step), 1.0, most));
+  const double most = way.angle() * way.radius() > kMostArcMm ? kMostChordsOfLong : kMostChords;
+  const int n = static_cast<int>(std::clamp(std::ceil(way.angle() / step), 1.0, most));
   Point at = from;
   for (int k = 1; k <= n; ++k) {
-    const double angle = begin + (arc.clockwise ? -sweep : sweep) * k / n;
-    const Point next = k == n ? to
-                              : Point{arc.center.x + radius * std::cos(angle),
-                                      arc.center.y + radius * std::sin(angle)};
+    const Point next = k == n ? to : way.At(k, n);
     pieces.push_back({at, next, path});
     at = next;
   }

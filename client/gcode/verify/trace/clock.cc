@@ -5,40 +5,9 @@
 
 #include "client/gcode/verify/machine/command_words.h"
 #include "client/gcode/verify/text.h"
+#include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
-namespace {
-
-double Across(const std::array<Micro, 3>& a, double x, double y) {
-  return std::hypot(static_cast<double>(a[0]) - x, static_cast<double>(a[1]) - y);
-}
-
-// Of an arc by its radius, the long way round if that is negative.
-double LengthByRadius(double chord, double radius) {
-  const double least = std::max(std::abs(radius), chord / 2);
-  if (chord <= 0) return 0;
-  const double angle = 2 * std::asin(chord / 2 / least);
-  return least * (radius < 0 ? 2 * M_PI - angle : angle);
-}
-
-}  // namespace
-
-double FlatLength(const Motion& motion) {
-  const double chord =
-      Across(motion.from, static_cast<double>(motion.to[0]), static_cast<double>(motion.to[1]));
-  if (motion.radius != 0) return LengthByRadius(chord, static_cast<double>(motion.radius));
-  if (!motion.has_center) return chord;
-  const auto x = static_cast<double>(motion.center_x);
-  const auto y = static_cast<double>(motion.center_y);
-  const double begin =
-      std::atan2(static_cast<double>(motion.from[1]) - y, static_cast<double>(motion.from[0]) - x);
-  const double end =
-      std::atan2(static_cast<double>(motion.to[1]) - y, static_cast<double>(motion.to[0]) - x);
-  double turn = motion.number == 2 ? begin - end : end - begin;
-  if (turn <= 1e-9) turn += 2 * M_PI;
-  return turn * Across(motion.from, x, y);
-}
-
 namespace {
 
 double PathLengthOf(const Motion& motion) {
@@ -58,6 +27,14 @@ double DwellSeconds(std::string_view line) {
 }
 
 }  // namespace
+
+double FlatLength(const Motion& motion) {
+  const Point from = PointOf(motion.from, 1);
+  const Point to = PointOf(motion.to, 1);
+  if (!motion.has_center && motion.radius == 0) return std::hypot(to.x - from.x, to.y - from.y);
+  const ArcWay way(from, to, ArcOf(motion, 1));
+  return way.angle() * way.radius();
+}
 
 void Clock::Take(const VerifyLine& line, const VerifyMachine& machine) {
   // Some dwells belong to the moves around them.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
-#include <unordered_map>
 
 #include "client/gcode/verify/text.h"
 
@@ -13,6 +12,7 @@ namespace {
 struct Name {
   std::string_view name;  // in small letters, blanks, dashes and underlines as one blank
   PathClass path_class;
+  bool bare = false;  // stands alone in a comment, of slicers that do not mark it as a feature
 };
 
 constexpr Name kNames[] = {
@@ -27,11 +27,11 @@ constexpr Name kNames[] = {
     {"top solid infill", PathClass::kTop},
     {"bridge infill", PathClass::kBridge},
     {"internal bridge infill", PathClass::kBridge},
-    {"gap fill", PathClass::kInfill},
-    {"ironing", PathClass::kIroning},
+    {"gap fill", PathClass::kInfill, true},
+    {"ironing", PathClass::kIroning, true},
     {"skirt/brim", PathClass::kSkirt},
-    {"skirt", PathClass::kSkirt},
-    {"brim", PathClass::kSkirt},
+    {"skirt", PathClass::kSkirt, true},
+    {"brim", PathClass::kSkirt, true},
     {"support material", PathClass::kSupport},
     {"support material interface", PathClass::kInterface},
     {"wipe tower", PathClass::kTower},
@@ -45,10 +45,10 @@ constexpr Name kNames[] = {
     {"internal solid infill", PathClass::kSkin},
     {"bottom surface", PathClass::kBottom},
     {"top surface", PathClass::kTop},
-    {"bridge", PathClass::kBridge},
+    {"bridge", PathClass::kBridge, true},
     {"internal bridge", PathClass::kBridge},
     {"gap infill", PathClass::kInfill},
-    {"support", PathClass::kSupport},
+    {"support", PathClass::kSupport, true},
     {"support interface", PathClass::kInterface},
     {"support transition", PathClass::kInterface},
     {"prime tower", PathClass::kTower},
@@ -60,18 +60,18 @@ constexpr Name kNames[] = {
     {"fill", PathClass::kInfill},
     {"solid fill", PathClass::kSkin},
     {"gap", PathClass::kInfill},
-    {"raft", PathClass::kSupport},
+    {"raft", PathClass::kSupport, true},
     // Simplify3D
-    {"outer perimeter", PathClass::kOuterWall},
-    {"inner perimeter", PathClass::kInnerWall},
-    {"single extrusion", PathClass::kInfill},
-    {"external single extrusion", PathClass::kOuterWall},
-    {"internal single extrusion", PathClass::kInfill},
-    {"solid layer", PathClass::kSkin},
-    {"dense support", PathClass::kInterface},
-    {"prime pillar", PathClass::kTower},
-    {"ooze shield", PathClass::kTower},
-    {"infill", PathClass::kInfill},
+    {"outer perimeter", PathClass::kOuterWall, true},
+    {"inner perimeter", PathClass::kInnerWall, true},
+    {"single extrusion", PathClass::kInfill, true},
+    {"external single extrusion", PathClass::kOuterWall, true},
+    {"internal single extrusion", PathClass::kInfill, true},
+    {"solid layer", PathClass::kSkin, true},
+    {"dense support", PathClass::kInterface, true},
+    {"prime pillar", PathClass::kTower, true},
+    {"ooze shield", PathClass::kTower, true},
+    {"infill", PathClass::kInfill, true},
     // KISSlicer
     {"perimeter path", PathClass::kOuterWall},
     {"loop path", PathClass::kInnerWall},
@@ -87,34 +87,11 @@ constexpr Name kNames[] = {
     {"pillar path", PathClass::kTower},
     {"prime pillar path", PathClass::kTower},
     // FlashPrint
-    {"shell", PathClass::kWall},
-    {"internal shell", PathClass::kInnerWall},
-    {"outer shell", PathClass::kOuterWall},
-    {"inner shell", PathClass::kInnerWall},
+    {"shell", PathClass::kWall, true},
+    {"internal shell", PathClass::kInnerWall, true},
+    {"outer shell", PathClass::kOuterWall, true},
+    {"inner shell", PathClass::kInnerWall, true},
 };
-
-// Names that stand alone in a comment, from slicers that do not mark them as features.
-constexpr std::string_view kBareNames[] = {"outer perimeter",
-                                           "inner perimeter",
-                                           "single extrusion",
-                                           "external single extrusion",
-                                           "internal single extrusion",
-                                           "solid layer",
-                                           "gap fill",
-                                           "infill",
-                                           "support",
-                                           "dense support",
-                                           "bridge",
-                                           "skirt",
-                                           "brim",
-                                           "ironing",
-                                           "prime pillar",
-                                           "ooze shield",
-                                           "raft",
-                                           "internal shell",
-                                           "outer shell",
-                                           "inner shell",
-                                           "shell"};
 
 std::string Plain(std::string_view name) {
   std::string plain;
@@ -128,13 +105,10 @@ std::string Plain(std::string_view name) {
 }
 
 PathClass Find(std::string_view name) {
-  static const std::unordered_map<std::string, PathClass> known = [] {
-    std::unordered_map<std::string, PathClass> map;
-    for (const Name& n : kNames) map.emplace(std::string(n.name), n.path_class);
-    return map;
-  }();
-  const auto found = known.find(Plain(name));
-  return found == known.end() ? PathClass::kUnnamed : found->second;
+  const std::string plain = Plain(name);
+  const auto* found = std::find_if(std::begin(kNames), std::end(kNames),
+                                   [&plain](const Name& known) { return known.name == plain; });
+  return found == std::end(kNames) ? PathClass::kUnnamed : found->path_class;
 }
 
 }  // namespace
@@ -161,8 +135,8 @@ std::optional<PathClass> ClassOfComment(std::string_view comment) {
     }
     return Find(name);
   }
-  for (const std::string_view name : kBareNames) {
-    if (comment == name) return Find(name);
+  for (const Name& name : kNames) {
+    if (name.bare && comment == name.name) return name.path_class;
   }
   return std::nullopt;
 }

@@ -13,6 +13,7 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -32,9 +33,36 @@ struct TraceSegment {
   int32_t arc = -1;  // index in TraceChunk::arcs
 };
 
+// Of words that are `unit` each.
+inline Point PointOf(const std::array<Micro, 3>& at, double unit) {
+  return {static_cast<double>(at[0]) * unit, static_cast<double>(at[1]) * unit};
+}
+
 struct TraceArc {
   Point center;
   bool clockwise = false;
+};
+
+// That of `motion`, in words that are `unit` each. With a positive radius it takes the short way
+// round: the center then lies on the right of the chord where it turns clockwise.
+TraceArc ArcOf(const Motion& motion, double unit);
+
+// The way along an arc from one point to another, once round if they are one.
+class ArcWay {
+ public:
+  ArcWay(Point from, Point to, const TraceArc& arc);
+
+  double radius() const { return radius_; }
+  double angle() const { return std::abs(turn_); }  // in radians
+
+  // Behind `k` of `n` equal parts.
+  Point At(int k, int n) const;
+
+ private:
+  Point center_;
+  double radius_;
+  double begin_;
+  double turn_;  // in radians, to the left
 };
 
 struct TracePath {

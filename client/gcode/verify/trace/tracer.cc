@@ -18,26 +18,6 @@ constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
 // Of inches.
 Micro InMm(Micro length) { return std::llround(static_cast<double>(length) * kInchMm); }
 
-// In mm; of an arc. With a positive radius it takes the short way round: the center then lies on
-// the right of the chord where it turns clockwise.
-Point CenterOf(const Motion& motion, double unit) {
-  if (motion.has_center) {
-    return {static_cast<double>(motion.center_x) * unit,
-            static_cast<double>(motion.center_y) * unit};
-  }
-  const Point from{static_cast<double>(motion.from[0]) * unit,
-                   static_cast<double>(motion.from[1]) * unit};
-  const Point to{static_cast<double>(motion.to[0]) * unit,
-                 static_cast<double>(motion.to[1]) * unit};
-  const double half = std::hypot(to.x - from.x, to.y - from.y) / 2;
-  const double radius = static_cast<double>(motion.radius) * unit;
-  const double off = std::sqrt(std::max(radius * radius - half * half, 0.0));
-  const double right = (motion.number == 2) == (radius > 0) ? 1 : -1;
-  const double share = half > 0 ? right * off / (2 * half) : 0;
-  return {(from.x + to.x) / 2 + share * (to.y - from.y),
-          (from.y + to.y) / 2 - share * (to.x - from.x)};
-}
-
 MoveKind KindOf(const Motion& motion) {
   const bool sideways = motion.from[0] != motion.to[0] || motion.from[1] != motion.to[1];
   if (motion.number == 10) return MoveKind::kRetraction;
@@ -50,43 +30,25 @@ MoveKind KindOf(const Motion& motion) {
 }
 
 uint64_t IdentityOf(const Motion& motion, uint64_t acceleration, bool wiping) {
-  uint64_t digest = Mix(acceleration, motion.was_retracted ? 1 : 0);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    digest = Mix(digest, static_cast<uint64_t>(motion.from[axis]));
-    digest = Mix(digest, static_cast<uint64_t>(motion.to[axis]));
-  }
-  digest = Mix(digest, static_cast<uint64_t>(motion.filament));
-  digest = Mix(digest, static_cast<uint64_t>(motion.feed));
+  const std::array<Micro, 3>& from = motion.from;
+  const std::array<Micro, 3>& to = motion.to;
+  uint64_t digest = MixAll(acceleration, motion.was_retracted, from[0], to[0], from[1], to[1],
+                           from[2], to[2], motion.filament, motion.feed);
   if (motion.has_center) {
-    digest = Mix(digest, static_cast<uint64_t>(motion.center_x));
-    digest = Mix(digest, static_cast<uint64_t>(motion.center_y));
-    digest = Mix(digest, static_cast<uint64_t>(motion.turns));
+    digest = MixAll(digest, motion.center_x, motion.center_y, motion.turns);
   }
   // G0 and G1 are the same to what prints nothing.
-  const auto number = static_cast<uint64_t>(std::max(motion.number, 1));
-  return Mix(digest, number * 2 + (wiping ? 1 : 0));
-}
-
-// Halfway along the arc from `from` to `to`.
-Point MiddleOfArc(Point from, Point to, Point center, bool clockwise) {
-  const double begin = std::atan2(from.y - center.y, from.x - center.x);
-  const double end = std::atan2(to.y - center.y, to.x - center.x);
-  double sweep = clockwise ? begin - end : end - begin;
-  while (sweep <= 1e-9) sweep += 2 * M_PI;
-  const double radius = std::hypot(from.x - center.x, from.y - center.y);
-  const double angle = begin + (clockwise ? -sweep : sweep) / 2;
-  return {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)};
+  return MixAll(digest, std::max(motion.number, 1) * 2 + (wiping ? 1 : 0));
 }
 
 // To the micrometre: of a spiral lift that begins elsewhere.
 uint64_t SpiralOf(const Motion& motion, double unit) {
   if (!motion.has_center || motion.to[2] <= motion.from[2]) return 0;
   const auto um = [unit](Micro from, Micro to) {
-    return static_cast<uint64_t>(std::llround(static_cast<double>(to - from) * unit * 1000));
+    return std::llround(static_cast<double>(to - from) * unit * 1000);
   };
-  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), static_cast<uint64_t>(motion.turns));
-  digest = Mix(digest, um(motion.from[0], motion.center_x));
-  return Mix(digest, um(motion.from[1], motion.center_y));
+  return MixAll(static_cast<uint64_t>(motion.number), motion.turns,
+                um(motion.from[0], motion.center_x), um(motion.from[1], motion.center_y));
 }
 
 // Moves what lies in section `end` and behind it from `from` to `to`.
@@ -99,6 +61,38 @@ void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
 }
 
 }  // namespace
+
+TraceArc ArcOf(const Motion& motion, double unit) {
+  const bool clockwise = motion.number == 2;
+  if (motion.has_center) {
+    return {PointOf({motion.center_x, motion.center_y, 0}, unit), clockwise};
+  }
+  const Point from = PointOf(motion.from, unit);
+  const Point to = PointOf(motion.to, unit);
+  const double half = std::hypot(to.x - from.x, to.y - from.y) / 2;
+  const double radius = static_cast<double>(motion.radius) * unit;
+  const double off = std::sqrt(std::max(radius * radius - half * half, 0.0));
+  const double right = clockwise == (radius > 0) ? 1 : -1;
+  const double share = half > 0 ? right * off / (2 * half) : 0;
+  const Point center{(from.x + to.x) / 2 + share * (to.y - from.y),
+                     (from.y + to.y) / 2 - share * (to.x - from.x)};
+  return {center, clockwise};
+}
+
+ArcWay::ArcWay(Point from, Point to, const TraceArc& arc)
+    : center_(arc.center),
+      radius_(std::hypot(from.x - center_.x, from.y - center_.y)),
+      begin_(std::atan2(from.y - center_.y, from.x - center_.x)) {
+  const double end = std::atan2(to.y - center_.y, to.x - center_.x);
+  double angle = arc.clockwise ? begin_ - end : end - begin_;
+  while (angle <= 1e-9) angle += 2 * M_PI;
+  turn_ = arc.clockwise ? -angle : angle;
+}
+
+Point ArcWay::At(int k, int n) const {
+  const double angle = begin_ + turn_ * k / n;
+  return {center_.x + radius_ * std::cos(angle), center_.y + radius_ * std::sin(angle)};
+}
 
 std::string_view MoveKindName(MoveKind kind) {
   constexpr std::string_view kNames[] = {"travel",     "wipe",    "move up", "move down",
@@ -250,8 +244,7 @@ void Tracer::FixExcursion(Point begin, double z_mm) {
 void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
   TracePath path;
   path.first_segment = static_cast<uint32_t>(chunk_.segments.size());
-  path.start = {static_cast<double>(motion.from[0]) * unit,
-                static_cast<double>(motion.from[1]) * unit};
+  path.start = PointOf(motion.from, unit);
   path.z_mm = static_cast<double>(motion.to[2]) * unit;
   path.joined = in_path_ && pending_.empty();
   FixExcursion(path.start, static_cast<double>(motion.from[2]) * unit);
@@ -308,14 +301,13 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.digest = line.digest;
   segment.conditions = line.conditions;
   segment.filament_mm = static_cast<double>(motion.filament) * unit;
-  segment.end = {static_cast<double>(motion.to[0]) * unit,
-                 static_cast<double>(motion.to[1]) * unit};
+  segment.end = PointOf(motion.to, unit);
   printed_mm_ = static_cast<double>(motion.to[2]) * unit;
   extent_.Add(segment.end);
   segment.line = static_cast<uint32_t>(line.number);
   if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());
-    chunk_.arcs.push_back({CenterOf(motion, unit), motion.number == 2});
+    chunk_.arcs.push_back(ArcOf(motion, unit));
   }
   chunk_.segments.push_back(segment);
   const uint64_t acceleration = machine.AccelerationDigest();
@@ -324,7 +316,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   }
   TracePath& path = chunk_.paths.back();
   path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
-  path.z_mm = std::max(path.z_mm, static_cast<double>(motion.to[2]) * unit);
+  path.z_mm = std::max(path.z_mm, printed_mm_);
   const auto length = static_cast<float>(FlatLength(motion) * unit);
   path.length_mm += length;
   path.filament_mm += static_cast<float>(segment.filament_mm);
@@ -352,13 +344,10 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.acceleration = machine.AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
   move.tool = machine.tool();
-  move.from = {static_cast<double>(motion.from[0]) * unit,
-               static_cast<double>(motion.from[1]) * unit};
-  move.to = {static_cast<double>(motion.to[0]) * unit, static_cast<double>(motion.to[1]) * unit};
+  move.from = PointOf(motion.from, unit);
+  move.to = PointOf(motion.to, unit);
   move.middle = {(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2};
-  if (motion.has_center) {
-    move.middle = MiddleOfArc(move.from, move.to, CenterOf(motion, unit), motion.number == 2);
-  }
+  if (motion.has_center) move.middle = ArcWay(move.from, move.to, ArcOf(motion, unit)).At(1, 2);
   move.spiral = SpiralOf(motion, unit);
   move.z_from_mm = static_cast<double>(motion.from[2]) * unit;
   move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
