@@ -255,6 +255,7 @@ void Verifier::CheckChunk() {
   const auto check = [&](size_t i) {
     LayerPair layer(chunk_was_, chunk_is_, i, limit_);
     if (layer.Ended()) return;
+    layer.FindTails();
     if (hides) {
       layer.SetHidden(HiddenLinksOf(layer, {shapes[i], shapes[i + 1], shapes[i + 2]},
                                     context_.permissions.max_hidden_travel_mm,

@@ -118,13 +118,11 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
     const bool begins = layer.is().paths[link].first_segment == visit.first_segment;
     if (left == nullptr || left->last_path + 1 != link || !begins) continue;
     if (layer.Outer(visit.path)) continue;
-    const absl::Span<const Piece> pieces = layer.PiecesOf(left->path);
-    const uint32_t tail = LayerPair::TailMoves(layer.is(), left->last_path, pieces);
+    const uint32_t tail = layer.Side(false).TailOf(link);
     const absl::Span<const TraceMove> moves = TravelAlone(layer.is(), link, tail);
     if (moves.empty()) continue;
-    const uint32_t end_along =
-        LayerPair::TailMoves(layer.is(), left->last_path, pieces, /*any_speed=*/true);
-    const size_t along = MovesWithin(moves.first(end_along - tail), kLeavingMm);
+    const size_t along =
+        MovesWithin(moves.first(layer.Side(false).AlongOf(link) - tail), kLeavingMm);
     if (moves.size() > along + 1 && !bends) continue;
     if (Hides(shapes, moves, along, longest_mm)) links.insert(link);
   }

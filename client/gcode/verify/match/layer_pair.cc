@@ -249,6 +249,30 @@ void LayerPair::Match() {
   }
 }
 
+void LayerPair::FindTails() {
+  for (LayerSide* side : {&side_was_, &side_is_}) {
+    const uint32_t first = side->first_path;
+    side->tails.assign(side->end_path - first + 1, 0);
+    side->along = side->tails;
+    const auto note = [side, first](uint32_t path, absl::Span<const Piece> pieces) {
+      side->tails[path + 1 - first] = TailMoves(side->chunk, path, pieces);
+      side->along[path + 1 - first] = TailMoves(side->chunk, path, pieces, /*any_speed=*/true);
+    };
+    // The travel to the layer begins with moves along the last path of the layer before.
+    if (first > 0) {
+      std::vector<Piece> pieces;
+      AppendPieces(side->chunk, first - 1, pieces);
+      note(first - 1, pieces);
+    }
+    for (const Visit& visit : visits_) {
+      if (!side->original) note(visit.last_path, PiecesOf(visit.path));
+    }
+    for (uint32_t path = first; side->original && path < side->end_path; ++path) {
+      note(path, PiecesOf(path));
+    }
+  }
+}
+
 uint32_t LayerPair::OriginalLine(uint32_t path) const {
   const auto behind =
       std::upper_bound(visits_.begin(), visits_.end(), path,

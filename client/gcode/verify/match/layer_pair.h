@@ -36,12 +36,25 @@ struct LayerSide {
   const bool original;
   uint32_t first_path = 0;
   uint32_t end_path = 0;
+  std::vector<uint32_t> tails = {};  // [link - first_path]
+  std::vector<uint32_t> along = {};
+
+  // How many moves at the beginning of a link, or of the one behind the layer, continue along the
+  // path before and are no travel (LayerPair::TailMoves); at any speed, too.
+  uint32_t TailOf(uint32_t link) const { return tails[link - first_path]; }
+  uint32_t AlongOf(uint32_t link) const { return along[link - first_path]; }
+  absl::Span<const TraceMove> MovesAlong(uint32_t link) const {
+    return chunk.MovesOf(link).first(AlongOf(link));
+  }
 };
 
 class LayerPair {
  public:
   // Layer `layer` of both chunks. REQUIRES: their sections hold the same deposits.
   LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer, const WorkLimit& limit = {});
+
+  // What the sides know of tails, which rules need, but not the shape of the layer.
+  void FindTails();
 
   // True if the time for the files is over: what is found then is not looked at.
   bool Ended() const { return limit_.Ended(); }

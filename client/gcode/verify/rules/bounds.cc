@@ -12,7 +12,6 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -141,11 +140,10 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
 
 // Of what goes along paths of the original, however fast.
 double LongestAlong(const LayerPair& layer) {
-  const Tails along(layer, true, true);
   double longest = 0;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     double length = 0;
-    for (const TraceMove& move : layer.was().MovesOf(link).first(along.At(link))) {
+    for (const TraceMove& move : layer.Side(true).MovesAlong(link)) {
       length += move.length_mm();
     }
     longest = std::max(longest, length);
@@ -168,9 +166,8 @@ void CompareBounds(const Observations& was, const Observations& is, const RuleCo
 
 void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   ObserveDetour(layer, findings.was);
-  const Tails tails(layer, false);
+  const LayerSide& side = layer.Side(false);
   // Moves along a path may be as fast as travel, if no longer than such in the original.
-  const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
   const absl::flat_hash_set<uint32_t> turned = TurnedDepartures(layer);
   const std::optional<Departures> to_layer = DeparturesTo(layer);
@@ -182,11 +179,10 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     // The travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
     const double most = first ? std::max(longest, kAlongToLayerMm) : longest;
-    const uint32_t moves =
-        MovesWithin(layer.is().MovesOf(link).first(along.At(link)), most + kOnPathMm);
+    const uint32_t moves = MovesWithin(side.MovesAlong(link), most + kOnPathMm);
     // How travel leaves a loop is another rule (leaving_paths.cc), there of the layer before.
     const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.contains(link);
-    const uint32_t skipped = std::max({tails.At(link), moves, departs ? 1u : 0u});
+    const uint32_t skipped = std::max({side.TailOf(link), moves, departs ? 1u : 0u});
     CheckLink(layer, link, skipped, first ? to_layer : within, findings);
   }
 }

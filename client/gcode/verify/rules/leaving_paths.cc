@@ -34,13 +34,6 @@ bool EndAlike(const LayerPair& layer, const Visit& visit) {
   return Distance(was, is) < kSamePointMm;
 }
 
-// The moves with which travel from the path begins along it, however fast.
-absl::Span<const TraceMove> MovesAlong(const TraceChunk& chunk, uint32_t path,
-                                       absl::Span<const Piece> pieces) {
-  return chunk.MovesOf(path + 1).first(
-      LayerPair::TailMoves(chunk, path, pieces, /*any_speed=*/true));
-}
-
 bool IsSideways(const TraceMove& move) { return move.sideways(); }
 
 // Travel leaves the path by a short move that it does not have in the original: another one than
@@ -52,7 +45,7 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
   if (departs == nullptr || layer.IsKnown(*departs)) return false;
   if (!same_end) {
     if (turned.contains(visit.last_path + 1)) return false;
-    const auto along = MovesAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
+    const auto along = layer.Side(false).MovesAlong(visit.last_path + 1);
     return std::none_of(along.begin(), along.end(), IsSideways);
   }
   const absl::Span<const TraceMove> had = layer.was().MovesOf(visit.path + 1);
@@ -143,10 +136,10 @@ Point PointAlong(absl::Span<const Piece> pieces, double mm) {
   return pieces.back().b;
 }
 
-// How far the open nozzle goes on along the path, however fast.
-double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+// How far the open nozzle goes on along the path before `link`, however fast.
+double GoesOnMm(const LayerSide& side, uint32_t link) {
   double length = 0;
-  for (const TraceMove& move : MovesAlong(chunk, path, pieces)) {
+  for (const TraceMove& move : side.MovesAlong(link)) {
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) break;
     length += move.length_mm();
   }
@@ -158,7 +151,6 @@ double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> 
 const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   constexpr double kLeastMm = 0.1;
   const TraceChunk& was = layer.was();
-  const absl::Span<const Piece> pieces = layer.PiecesOf(path);
   const absl::Span<const TraceMove> moves = was.MovesOf(path + 1);
   const Point end = was.EndOf(was.paths[path]);
   if (was.paths[path].size() < 3 || Distance(was.paths[path].start, end) > kOnPathMm)
@@ -168,9 +160,9 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   const double length = first.length_mm();
   const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
   if (!open || length <= kLeastMm || length > kLooseMm) return nullptr;
-  if (Distance(PointAlong(pieces, length), first.to) > kOnPathMm) return nullptr;
+  if (Distance(PointAlong(layer.PiecesOf(path), length), first.to) > kOnPathMm) return nullptr;
   // A straight move off a small loop ends there too, but leads across it.
-  if (GoesOnMm(was, path, pieces) <= length - kOnPathMm) return nullptr;
+  if (GoesOnMm(layer.Side(true), path + 1) <= length - kOnPathMm) return nullptr;
   return std::any_of(moves.begin() + 1, moves.end(), IsSideways) ? &first : nullptr;
 }
 
@@ -180,7 +172,7 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
   const TraceMove* had = GoesOnBy(layer, visit.path);
   if (had == nullptr) return;
   const TraceChunk& is = layer.is();
-  const double mm = GoesOnMm(is, visit.last_path, layer.PiecesOf(visit.path));
+  const double mm = GoesOnMm(layer.Side(false), visit.last_path + 1);
   if (mm > had->length_mm() - kOnPathMm) return;
   const absl::Span<const TraceMove> moves = is.MovesOf(visit.last_path + 1);
   const uint32_t line = moves.empty() ? is.segments[visit.last_segment].line : moves.front().line;

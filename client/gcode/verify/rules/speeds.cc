@@ -7,7 +7,6 @@
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
@@ -35,12 +34,12 @@ void Note(const LayerPair& layer, const TraceMove& move, Observations& observed)
   }
 }
 
-void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
+void ObserveWas(const LayerPair& layer, Observations& seen) {
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
     if (chunk.links[link].scripted) continue;
-    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
+    for (const TraceMove& move : chunk.MovesOf(link, layer.Side(true).TailOf(link))) {
       if (move.in_print) Note(layer, move, seen);
     }
   }
@@ -63,10 +62,9 @@ LongestTravels LongestOf(const LayerPair& layer) {
 // before the travel: then it says nothing of the length.
 bool AcceleratesByPath(const LayerPair& layer) {
   const TraceChunk& chunk = layer.was();
-  const Tails tails(layer, true);
   absl::flat_hash_map<uint64_t, uint64_t> of_path;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
+    for (const TraceMove& move : chunk.MovesOf(link, layer.Side(true).TailOf(link))) {
       if (move.kind != MoveKind::kTravel || !move.in_print) continue;
       const auto known = of_path.try_emplace(chunk.paths[link].acceleration, move.acceleration);
       if (known.first->second != move.acceleration) return false;
@@ -97,14 +95,14 @@ bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
          move.length_mm() > LoopGapMm(is, link - 1) || move.feed != is.paths[link - 1].feed;
 }
 
-void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
+void ObserveIs(const LayerPair& layer, Observations& seen) {
   const TraceChunk& chunk = layer.is();
   const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     // At unknown lines every step is that of the original there: see CheckScriptedTravels.
     if (chunk.links[link].scripted) continue;
-    for (const TraceMove& move : chunk.MovesOf(link, tails.At(link))) {
+    for (const TraceMove& move : chunk.MovesOf(link, layer.Side(false).TailOf(link))) {
       if (!IsNew(layer, link, move) || move.firmware) continue;
       Note(layer, move, seen);
       if (IsTooLong(move, longest)) {
@@ -118,8 +116,8 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
 }  // namespace
 
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
-  ObserveWas(layer, Tails(layer, true), findings.was);
-  ObserveIs(layer, Tails(layer, false), findings.is);
+  ObserveWas(layer, findings.was);
+  ObserveIs(layer, findings.is);
 }
 
 // After the last path there are also moves of the end script, which are no example for the print.

@@ -13,7 +13,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/link_parts.h"
-#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
@@ -108,27 +107,27 @@ void CheckLink(const LayerPair& layer, const LayerParts& had, const LinkCutter& 
 
 void ObserveParts(const LayerPair& layer, LayerFindings& findings) {
   LayerParts had;
-  const Tails was_tails(layer, true);
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     if (layer.Ended()) return;
     had.whole.insert(DigestOf(layer.was(), link));
-    for (const TraceMove& move : layer.was().MovesOf(link).first(was_tails.At(link))) {
+    const uint32_t tail = layer.Side(true).TailOf(link);
+    for (const TraceMove& move : layer.was().MovesOf(link).first(tail)) {
       had.tail_feeds.insert(move.feed);
     }
-    const LinkCutter cutter(layer.was(), link, was_tails.At(link));
+    const LinkCutter cutter(layer.was(), link, tail);
     const bool level = cutter.level() && !layer.was().links[link].new_layer;
     for (const LinkPart& part : cutter.Parts()) {
       had.all.Add(part);
       if (level) had.level.Add(part);
     }
   }
-  const Tails tails(layer, false);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     // At unknown lines every step is that of the original there: scripted_travel.cc.
     if (layer.is().links[link].scripted || had.whole.contains(DigestOf(layer.is(), link))) continue;
     const uint32_t gap = CrossesGap(layer.is(), link) ? 1 : 0;
-    const LinkCutter cutter(layer.is(), link, std::max(tails.At(link), gap), &layer);
+    const uint32_t skipped = std::max(layer.Side(false).TailOf(link), gap);
+    const LinkCutter cutter(layer.is(), link, skipped, &layer);
     CheckLink(layer, had, cutter, link, findings.is);
   }
   findings.was.parts = std::move(had.all);
@@ -140,8 +139,8 @@ void ObserveLastParts(const LayerPair& layer, LayerFindings& findings) {
   if (DigestOf(layer.was(), was) == DigestOf(layer.is(), is)) return;
   LayerParts had;
   for (const LinkPart& part : LinkCutter(layer.was(), was, 0).Parts()) had.all.Add(part);
-  const Tails tails(layer, false);
-  CheckLink(layer, had, LinkCutter(layer.is(), is, tails.At(is), &layer), is, findings.is);
+  const LinkCutter cutter(layer.is(), is, layer.Side(false).TailOf(is), &layer);
+  CheckLink(layer, had, cutter, is, findings.is);
 }
 
 void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {

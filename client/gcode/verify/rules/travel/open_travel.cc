@@ -5,7 +5,6 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -19,13 +18,12 @@ struct OpenTravel {
 
 std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
   const LayerSide& side = layer.Side(original);
-  // Travel begins where the move along the path before it ends.
-  const Tails tails(layer, original, true);
   std::vector<OpenTravel> travels;
   for (uint32_t link = side.first_path; link < side.end_path && !layer.Ended(); ++link) {
     const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
     if (moves.empty()) continue;
-    const double length = layer.OpenLengthOverWalls(side.chunk, link, tails.At(link));
+    // Travel begins where the move along the path before it ends.
+    const double length = layer.OpenLengthOverWalls(side.chunk, link, side.AlongOf(link));
     if (length <= 0) continue;
     OpenTravel travel{length, moves.front().line, true};
     for (const TraceMove& move : moves) {

@@ -8,7 +8,6 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -30,8 +29,7 @@ const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
 }
 
 // The travel in `link`; of length 0 if there is none, or none that counts.
-TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t link,
-                      uint32_t skipped) {
+TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t link) {
   const TraceChunk& chunk = side.chunk;
   const bool hides = !side.original && layer.IsHidden(link);
   TravelLength travel{.to_layer = chunk.links[link].new_layer, .at = {0, layer.index()}};
@@ -39,7 +37,7 @@ TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t li
   const TraceMove* last = nullptr;
   const TraceMove* sink = SinkOf(chunk, link);
   const TraceMove* departure = DepartureOf(chunk, link);  // retracts right behind it
-  for (const TraceMove& move : chunk.MovesOf(link, skipped)) {
+  for (const TraceMove& move : chunk.MovesOf(link, side.TailOf(link))) {
     travel.retracts |= Retracts(move);
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
@@ -61,26 +59,21 @@ TravelLength LengthOf(const LayerPair& layer, const LayerSide& side, uint32_t li
   return travel;
 }
 
-void ObserveTravelsToLayers(const LayerPair& layer, const Tails& was_tails, const Tails& is_tails,
-                            LayerFindings& findings) {
-  const auto travel_to = [&layer](const LayerSide& side, const Tails& tails) {
-    return LengthOf(layer, side, side.first_path, tails.At(side.first_path));
-  };
-  const TravelLength was = travel_to(layer.Side(true), was_tails);
-  TravelLength is = travel_to(layer.Side(false), is_tails);
+void ObserveTravelsToLayers(const LayerPair& layer, LayerFindings& findings) {
+  const TravelLength was = LengthOf(layer, layer.Side(true), layer.first_path_was());
+  TravelLength is = LengthOf(layer, layer.Side(false), layer.first_path_is());
   is.was_retracted = was.retracted_to_layer();
   is.was_retracting = was.retracts;
   if (was.to_layer && was.length_mm > 0) findings.was.travels_to_layers.push_back(was);
   if (is.to_layer && is.open_mm > 0) findings.is.travels_to_layers.push_back(is);
 }
 
-void Observe(const LayerPair& layer, const LayerSide& side, const Tails& tails,
-             Observations& seen) {
+void Observe(const LayerPair& layer, const LayerSide& side, Observations& seen) {
   TravelLength open;
   TravelLength winding;
   TravelLength back;
   for (uint32_t link = side.first_path; link < side.end_path; ++link) {
-    const TravelLength travel = LengthOf(layer, side, link, tails.At(link));
+    const TravelLength travel = LengthOf(layer, side, link);
     if (travel.open_mm > open.open_mm) open = travel;
     if (travel.excess_mm > winding.excess_mm) winding = travel;
     if (travel.turns_back) back = travel;
@@ -126,11 +119,9 @@ void CompareTravelsToLayers(const Observations& was, const Observations& is,
 }  // namespace
 
 void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings) {
-  const Tails was(layer, true);
-  const Tails is(layer, false);
-  Observe(layer, layer.Side(true), was, findings.was);
-  Observe(layer, layer.Side(false), is, findings.is);
-  ObserveTravelsToLayers(layer, was, is, findings);
+  Observe(layer, layer.Side(true), findings.was);
+  Observe(layer, layer.Side(false), findings.is);
+  ObserveTravelsToLayers(layer, findings);
 }
 
 void CompareTravelLengths(const Observations& was, const Observations& is,
