@@ -93,7 +93,7 @@ std::optional<VerifyBreak> CompareEnds(const Part& original, const Part& optimis
   // A label of an object does nothing: what is printed behind it has its own fan.
   if (!was.names && was.fan != is.fan) return differ("the fan differs from that");
   if (was.settings != is.settings) return differ("the settings differ from those");
-  if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is elsewhere than");
+  if (was.head != is.head) return differ("the head is elsewhere than");
   if (!was.label && was.retracted != is.retracted)
     return differ("the retraction differs from that");
   return std::nullopt;
@@ -148,7 +148,7 @@ std::optional<VerifyBreak> DifferenceIn(BothSides& sides, size_t i, size_t end_o
   if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
   if (was.header != is.header) return HeaderDifference(part_was, part_is);
   // Where paths change places, what is said of them does so too.
-  if (was.order == is.order && (was.said != is.said || was.told != is.told)) {
+  if (was.order == is.order && was.said != is.said) {
     return differ("the order of the comments differs from");
   }
   if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {

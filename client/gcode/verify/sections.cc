@@ -77,12 +77,11 @@ void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
 void SectionCutter::TakeLoose(uint64_t position) {
   section_.notes += loose_notes_;
   loose_notes_ = {};
-  const auto take = [position](std::vector<uint64_t>& loose, uint64_t& digest) {
-    for (const uint64_t one : loose) digest = Mix(digest, Mix(one, position));
-    loose.clear();
-  };
-  take(loose_said_, section_.said);
-  take(loose_told_, section_.told);
+  for (size_t kind = 0; kind < loose_said_.size(); ++kind) {
+    uint64_t& digest = section_.said[kind];
+    for (const uint64_t one : loose_said_[kind]) digest = Mix(digest, Mix(one, position));
+    loose_said_[kind].clear();
+  }
 }
 
 SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachine& machine,
@@ -118,7 +117,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       TakeLoose(section_.deposits.count);
       break;
     case LineRole::kComment:
-      (line.command == 0 ? loose_said_ : loose_told_).push_back(line.digest);
+      loose_said_[line.command == 0 ? 0 : 1].push_back(line.digest);
       loose_notes_.Add(line.digest);
       break;
     case LineRole::kFence:
@@ -164,8 +163,7 @@ void SectionCutter::Finish(const VerifyMachine& machine) {
 void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   const size_t first_note = std::max(last_deposit_ + 1, section_.first_note);
   const DigestSet notes = std::exchange(loose_notes_, {});
-  std::vector<uint64_t> said = std::exchange(loose_said_, {});
-  std::vector<uint64_t> told = std::exchange(loose_told_, {});
+  auto said = std::exchange(loose_said_, {});
   Close(machine, last_line_, 0, false);
   // Behind the mark of a layer the first path is of that one.
   cut_.sections.back().ends_layer = std::exchange(layer_prints_, false);
@@ -173,7 +171,6 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   section_.first_note = first_note;
   loose_notes_ = notes;
   loose_said_ = std::move(said);
-  loose_told_ = std::move(told);
 }
 
 void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,
@@ -186,16 +183,14 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   // What follows the print may be all that leads away from it.
   const bool end = fence == kEndOfText;
   if (fixed) {
-    section_.x = machine.x();
-    section_.y = machine.y();
-    section_.z = machine.z();
+    section_.head = machine.at();
     section_.settings = machine.SettingsDigest();
   }
   // A change of height is not a line: the state there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
   section_.label = label;
   section_.lift = label && has_height_ ? machine.z() - height_ : 0;
-  if (end) section_.z = machine.z();
+  if (end) section_.head[2] = machine.z();
   if (label || fixed || end) section_.retracted = machine.retracted();
   cut_.sections.push_back(section_);
   if (in_script_) cut_.of_script = cut_.sections.size();

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -57,8 +58,7 @@ struct Section {
   // Of deposits, and of comments and of commands that only say something, each with their place
   // among these, in their order; notes say to which section they belong.
   uint64_t order = 0;
-  uint64_t said = 0;
-  uint64_t told = 0;
+  std::array<uint64_t, 2> said{};
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
   uint64_t fence = 0;
@@ -68,14 +68,12 @@ struct Section {
   bool heats = false;  // it ends with a command that sets a temperature
 
   // Of labels of objects in every notation (object_labels.h).
-  uint64_t under = 0;         // those in force in it
-  bool names = false;         // it ends with one
-  uint32_t label_faults = 0;  // of them up to its end
-  Micro x = 0;                // of the head there, if the line is fixed
-  Micro y = 0;
-  Micro z = 0;
-  bool retracted = false;  // at labels of objects and pictures, too
-  Micro lift = 0;          // how far above what was printed last, at labels of objects
+  uint64_t under = 0;           // those in force in it
+  bool names = false;           // it ends with one
+  uint32_t label_faults = 0;    // of them up to its end
+  std::array<Micro, 3> head{};  // where it is there, if the line is fixed
+  bool retracted = false;       // at labels of objects and pictures, too
+  Micro lift = 0;               // how far above what was printed last, at labels of objects
   uint64_t settings = 0;
   uint64_t fan = 0;
 };
@@ -130,9 +128,8 @@ class SectionCutter {
   ObjectLabels labels_;
   Sections cut_;
   Section section_;
-  DigestSet loose_notes_;             // since the last deposit
-  std::vector<uint64_t> loose_said_;  // comments among them
-  std::vector<uint64_t> loose_told_;  // commands among them
+  DigestSet loose_notes_;                            // since the last deposit
+  std::array<std::vector<uint64_t>, 2> loose_said_;  // comments and commands among them
   size_t last_line_ = 0;
   size_t last_deposit_ = 0;
   bool in_script_;

@@ -12,13 +12,6 @@ namespace {
 constexpr std::string_view kObject = "@OBJECT";
 constexpr std::string_view kExcludeRegion = "@EXCLUDEREGION";
 
-// What follows `prefix`, if the line begins with it.
-bool Follows(std::string_view line, std::string_view prefix, std::string_view& rest) {
-  if (!Begins(line, prefix)) return false;
-  rest = TrimLine(line.substr(prefix.size()));
-  return true;
-}
-
 // The value of NAME= among the parameters of a macro, perhaps quoted; else all of them.
 std::string_view NameIn(std::string_view parameters) {
   const size_t at = parameters.find("NAME=");
@@ -76,30 +69,35 @@ void ObjectLabels::End(Notation notation, std::string_view name) {
   open_[notation] = 0;
 }
 
+// The comment begins with `prefix`, followed by the name of the object, or by `none`.
+struct ObjectLabels::Mark {
+  std::string_view prefix;
+  void (ObjectLabels::*take)(Notation notation, std::string_view name);
+  Notation notation;
+  std::string_view none = {};
+};
+
 bool ObjectLabels::Take(std::string_view line) {
+  static constexpr Mark kMarks[] = {
+      {"; stop printing object, unique label id:", &ObjectLabels::End, kUnique},
+      {"; start printing object, unique label id:", &ObjectLabels::Begin, kUnique},
+      {"; stop printing object", &ObjectLabels::End, kPrinting},
+      {"; printing object", &ObjectLabels::Begin, kPrinting},
+      {"; OBJECT_ID:", &ObjectLabels::Switch, kObjectId},
+      {";MESH:", &ObjectLabels::Switch, kMesh, "NONMESH"},
+      {";PRINTING_ID:", &ObjectLabels::Switch, kPrintingId, "-1"},
+      {";PRINTING:", &ObjectLabels::Switch, kPrintingOf, "NON-OBJECT"},
+  };
   std::string_view rest;
   if (line.empty()) return false;
   if (line[0] == ';') {
-    if (Follows(line, "; stop printing object, unique label id:", rest)) {
-      End(kUnique, rest);
-    } else if (Follows(line, "; start printing object, unique label id:", rest)) {
-      Begin(kUnique, rest);
-    } else if (Follows(line, "; stop printing object", rest)) {
-      End(kPrinting, rest);
-    } else if (Follows(line, "; printing object", rest)) {
-      Begin(kPrinting, rest);
-    } else if (Follows(line, "; OBJECT_ID:", rest)) {
-      Switch(kObjectId, rest);
-    } else if (Follows(line, ";MESH:", rest)) {
-      Switch(kMesh, rest == "NONMESH" ? std::string_view() : rest);
-    } else if (Follows(line, ";PRINTING_ID:", rest)) {
-      Switch(kPrintingId, rest == "-1" ? std::string_view() : rest);
-    } else if (Follows(line, ";PRINTING:", rest)) {
-      Switch(kPrintingOf, rest == "NON-OBJECT" ? std::string_view() : rest);
-    } else {
-      return false;
+    for (const Mark& mark : kMarks) {
+      if (!Begins(line, mark.prefix)) continue;
+      rest = TrimLine(line.substr(mark.prefix.size()));
+      (this->*mark.take)(mark.notation, rest == mark.none ? std::string_view() : rest);
+      return true;
     }
-    return true;
+    return false;
   }
   if (line[0] == '@') {
     for (const Notation notation : {kHost, kRegion}) {

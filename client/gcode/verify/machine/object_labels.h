@@ -40,6 +40,8 @@ class ObjectLabels {
     kCount,
   };
 
+  struct Mark;
+
   void Switch(Notation notation, std::string_view name);
   void Begin(Notation notation, std::string_view name);
   void End(Notation notation, std::string_view name);

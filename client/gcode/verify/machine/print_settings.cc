@@ -10,11 +10,6 @@
 namespace traverse::gcode {
 namespace {
 
-// The text after the colon of a comment.
-uint64_t ValueOf(std::string_view comment) {
-  return DigestOf(TrimLine(comment.substr(comment.find(':') + 1)));
-}
-
 // `words` has `word` between blanks.
 bool HasWord(std::string_view words, std::string_view word) {
   for (size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
@@ -51,16 +46,12 @@ bool NamesFeature(std::string_view comment) {
 }
 
 bool PrintSettings::SetByComment(std::string_view text) {
-  if (NamesFeature(text)) {
-    Set(kType, ValueOf(text));
-    return true;
-  }
-  if (Begins(text, ";WIDTH:") || Begins(text, "; LINE_WIDTH:")) {
-    Set(kWidth, ValueOf(text));
-    return true;
-  }
-  if (Begins(text, ";HEIGHT:") || Begins(text, "; LAYER_HEIGHT:")) {
-    Set(kHeight, ValueOf(text));
+  constexpr std::pair<std::string_view, Slot> kMarks[] = {
+      {";TYPE:", kType},         {"; FEATURE:", kType}, {";WIDTH:", kWidth},
+      {"; LINE_WIDTH:", kWidth}, {";HEIGHT:", kHeight}, {"; LAYER_HEIGHT:", kHeight}};
+  for (const auto& [mark, slot] : kMarks) {
+    if (!Begins(text, mark)) continue;
+    Set(slot, DigestOf(TrimLine(text.substr(mark.size()))));
     return true;
   }
   // Names of features in the words of slicers without such marks.

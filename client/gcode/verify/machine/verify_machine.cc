@@ -21,13 +21,28 @@ std::string_view TrimmedLine(std::string_view& rest) {
   return line;
 }
 
+// A line of which no more is needed than what it begins with.
+struct Ahead {
+  std::string_view line;
+  char letter = 0;
+  int number = -1;
+
+  explicit Ahead(std::string_view of_line) : line(of_line) {
+    if (line.empty()) return;
+    letter = UpperCase(line[0]);
+    std::from_chars(line.data() + 1, line.data() + line.size(), number);
+  }
+
+  bool HasReturn() const { return line.find('\r') != std::string_view::npos; }
+};
+
 // The next one that is not blank and no comment; empty if none follows.
-std::string_view NextCommand(std::string_view& rest) {
+Ahead NextCommand(std::string_view& rest) {
   while (!rest.empty()) {
     const std::string_view line = TrimmedLine(rest);
-    if (!line.empty() && line[0] != ';') return line;
+    if (!line.empty() && line[0] != ';') return Ahead(line);
   }
-  return {};
+  return Ahead({});
 }
 
 // Commands that are looked at for how a lift or a wait goes on.
@@ -214,15 +229,13 @@ bool VerifyMachine::DepositsBehind() const {
   Micro y = at_[1];
   Nano e = e_;
   for (size_t i = 0; i < kMostAhead; ++i) {
-    const std::string_view line = NextCommand(rest);
-    if (line.empty()) return false;
-    if (UpperCase(line[0]) != 'G') continue;
-    int number = -1;
-    std::from_chars(line.data() + 1, line.data() + line.size(), number);
-    if (number != 92 && (number < 0 || number > 3)) continue;
-    const CommandWords words(WordsOf(line));
+    const Ahead next = NextCommand(rest);
+    if (next.line.empty()) return false;
+    const bool moves = next.number >= 0 && next.number <= 3;
+    if (next.letter != 'G' || (!moves && next.number != 92)) continue;
+    const CommandWords words(WordsOf(next.line));
     if (!words.readable) return false;
-    const bool sideways = number != 92 && (words.Has('X') || words.Has('Y'));
+    const bool sideways = moves && (words.Has('X') || words.Has('Y'));
     if (sideways) {
       if (words.Has('E') && words.filament > (relative_ || relative_e_ ? 0 : e)) return true;
       if (words.Has('X')) x = relative_ ? x + words['X'] : words['X'];
@@ -237,11 +250,9 @@ bool VerifyMachine::DepositsBehind() const {
 bool VerifyMachine::PullsBehind() const {
   std::string_view rest = lines_.rest();
   for (size_t i = 0; i < kMostAhead; ++i) {
-    const std::string_view line = NextCommand(rest);
-    if (line.empty() || line.find('\r') != std::string_view::npos) return false;
-    const char letter = UpperCase(line[0]);
-    int number = -1;
-    std::from_chars(line.data() + 1, line.data() + line.size(), number);
+    const Ahead next = NextCommand(rest);
+    if (next.line.empty() || next.HasReturn()) return false;
+    const auto [line, letter, number] = next;
     const CommandWords words(WordsOf(line));
     const bool waits = (letter == 'G' && number == 4) || (letter == 'M' && number == 400);
     if (waits) continue;
@@ -271,15 +282,12 @@ size_t VerifyMachine::LinesOfLift() const {
   bool lifts = false;
   bool ended = false;
   for (size_t lines = 0; lines < kMostAhead; ++lines) {
-    const std::string_view line = TrimmedLine(rest);
-    if (line.find('\r') != std::string_view::npos) return 0;
-    const bool command = line.size() > 2 && (line[0] == 'G' || line[0] == 'g');
-    const bool mode = line.size() > 2 && (line[0] == 'M' || line[0] == 'm');
-    int number = -1;
-    if (command || mode) std::from_chars(line.data() + 1, line.data() + line.size(), number);
-    if (ended) return mode && number == (relative_e_ ? 83 : 82) ? lines + 1 : lines;
+    const Ahead next(TrimmedLine(rest));
+    if (next.HasReturn()) return 0;
+    const auto [line, letter, number] = next;
+    if (ended) return letter == 'M' && number == (relative_e_ ? 83 : 82) ? lines + 1 : lines;
     if (line.empty()) continue;
-    if (!command) return 0;
+    if (letter != 'G') return 0;
     const CommandWords words(WordsOf(line));
     ended = number == 90 && lifts;
     const bool lift = (number == 0 || number == 1) && words.Has('Z') && words.OnlyFrom("ZF");
@@ -293,9 +301,9 @@ size_t VerifyMachine::LinesOfLift() const {
 bool VerifyMachine::ConditionOnlyTells() const {
   std::string_view rest = lines_.rest();
   for (size_t i = 0; i < kMostAhead; ++i) {
-    const std::string_view line = NextCommand(rest);
-    if (line.find('\r') != std::string_view::npos) return false;
-    const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
+    const Ahead next = NextCommand(rest);
+    if (next.HasReturn()) return false;
+    const std::string_view name = next.line.substr(0, next.line.find_first_of(" \t;"));
     if (name == "M623") return true;
     const bool tells =
         name == "M971" || name == "M9711" || name == "M991" || name == "M1002" || name == "M1004";

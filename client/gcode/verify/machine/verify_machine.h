@@ -76,8 +76,7 @@ class VerifyMachine {
   // The next line; false at the end.
   bool Next(VerifyLine& line);
 
-  Micro x() const { return at_[0]; }
-  Micro y() const { return at_[1]; }
+  const std::array<Micro, 3>& at() const { return at_; }  // X, Y and Z of the head
   Micro z() const { return at_[2]; }
   bool retracted() const { return firmware_retracted_ || pulled_ > kSlack; }
   bool inches() const { return inches_; }

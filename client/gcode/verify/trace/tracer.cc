@@ -241,6 +241,13 @@ void Tracer::FixExcursion(Point begin, double z_mm) {
   }
 }
 
+void Tracer::EndLink() {
+  link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
+  link_.end_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.links.push_back(link_);
+}
+
 void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
   TracePath path;
   path.first_segment = static_cast<uint32_t>(chunk_.segments.size());
@@ -249,12 +256,9 @@ void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
   path.joined = in_path_ && pending_.empty();
   FixExcursion(path.start, static_cast<double>(motion.from[2]) * unit);
   extent_.Add(path.start);
-  link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
-  chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
+  EndLink();
   pending_.clear();
   pending_commands_.clear();
-  link_.end_move = static_cast<uint32_t>(chunk_.moves.size());
-  chunk_.links.push_back(link_);
   link_ = TraceLink{};
   const auto index = static_cast<uint32_t>(chunk_.paths.size());
   if (layer_due_) {
@@ -391,11 +395,7 @@ void Tracer::Mark() {
 }
 
 TraceChunk Tracer::TakeChunk(uint32_t end_section, bool last_of_file) {
-  TraceLink last = link_;
-  last.first_move = static_cast<uint32_t>(chunk_.moves.size());
-  chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
-  last.end_move = static_cast<uint32_t>(chunk_.moves.size());
-  chunk_.links.push_back(last);
+  EndLink();
   chunk_.end_section = end_section;
   chunk_.seconds = clock_.seconds();
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});

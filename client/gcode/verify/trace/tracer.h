@@ -44,6 +44,7 @@ class Tracer {
   void BeginSection(const VerifyLine& line, uint32_t section, double before_seconds);
   void NotePlaces(double before_seconds);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
+  void EndLink();
   bool OnlyRounding() const;
   void FixExcursion(Point begin, double z_mm);
   bool IsAside(Point at, Point begin) const;

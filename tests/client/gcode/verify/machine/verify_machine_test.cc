@@ -30,8 +30,8 @@ TEST(VerifyMachine, G92SaysWhereTheAxesAreThatItNames) {
   VerifyLine line;
   while (machine.Next(line)) {
   }
-  EXPECT_EQ(machine.x(), 1'500'000);
-  EXPECT_EQ(machine.y(), 20'500'000);
+  EXPECT_EQ(machine.at()[0], 1'500'000);
+  EXPECT_EQ(machine.at()[1], 20'500'000);
   EXPECT_EQ(machine.z(), 2'500'000);
 }
 
