@@ -24,18 +24,6 @@ void AppendTo(StatedHeights& all, const StatedHeights& other) {
 
 }  // namespace
 
-void LiftLog::Append(const LiftLog& other) {
-  const auto shift = static_cast<uint32_t>(pieces.size());
-  AppendTo(pieces, other.pieces);
-  for (size_t kind = 0; kind < kTravelKinds; ++kind) {
-    for (TravelProfile travel : other.travels[kind]) {
-      travel.first += shift;
-      travel.end += shift;
-      travels[kind].push_back(travel);
-    }
-  }
-}
-
 void Observations::Append(const Observations& other) {
   for (size_t kind = 0; kind < accelerations.size(); ++kind) {
     AppendTo(accelerations[kind], other.accelerations[kind]);
@@ -60,7 +48,7 @@ void Observations::Append(const Observations& other) {
   AppendTo(lost_departures, other.lost_departures);
   AppendTo(pokes, other.pokes);
   AppendTo(long_travels, other.long_travels);
-  lifts.Append(other.lifts);
+  for (size_t kind = 0; kind < kTravelKinds; ++kind) AppendTo(travels[kind], other.travels[kind]);
   AppendTo(wipes, other.wipes);
 }
 

@@ -10,6 +10,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
+#include "absl/container/inlined_vector.h"
 #include "client/gcode/verify/match/layer_pair.h"
 #include "client/gcode/verify/match/link_parts.h"
 #include "client/gcode/verify/report.h"
@@ -49,21 +50,13 @@ struct TravelProfile {
     float length_mm = 0;
   };
   Place at;
-  uint32_t first = 0;  // in LiftLog::pieces
-  uint32_t end = 0;
   uint64_t ends = 0;  // a digest of its two end points
+  absl::InlinedVector<Piece, 2> pieces = {};
 };
 
 // The kinds of travel moves: retracted or not, between layers or within one, across outer walls or
 // not.
 inline constexpr size_t kTravelKinds = 8;
-
-struct LiftLog {
-  std::array<std::vector<TravelProfile>, kTravelKinds> travels;
-  std::vector<TravelProfile::Piece> pieces;
-
-  void Append(const LiftLog& other);
-};
 
 // Which way the heights lead that travel connects.
 enum class TravelRise : uint8_t { kLevel, kUp, kDown, kCount };
@@ -188,7 +181,7 @@ struct Observations {
   int64_t retractions_outside = 0;       // at the ends of outer walls
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
-  LiftLog lifts;
+  std::array<std::vector<TravelProfile>, kTravelKinds> travels;
   std::vector<Wipe> wipes;
 
   void Append(const Observations& other);

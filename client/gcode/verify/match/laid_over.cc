@@ -45,8 +45,7 @@ class LaidLayer {
   // True if most of the path lies over earlier ones.
   bool LiesOver(uint32_t path) {
     constexpr int kPoints = 16;
-    double length = 0;
-    for (const Piece& piece : paths_[path].pieces) length += Distance(piece.a, piece.b);
+    const double length = LengthOf(paths_[path].pieces);
     if (length < spacing_ / 2) return false;  // a dot lies on what it continues
     int seen = 0;
     int over = 0;
@@ -76,28 +75,24 @@ class LaidLayer {
   double UsualSpacing() {
     constexpr double kPoints = 400;
     double filament = 0;
-    for (const LaidPath& path : paths_) {
-      for (const Piece& piece : path.pieces) {
-        if (path.solid) filament += Distance(piece.a, piece.b) * path.filament_per_mm;
-      }
+    for (const Piece& piece : tree_.pieces()) {
+      const LaidPath& path = paths_[piece.path];
+      if (path.solid) filament += Distance(piece.a, piece.b) * path.filament_per_mm;
     }
     std::vector<double> distances;
     double seen = 0;
     double next = filament / kPoints / 2;
-    uint32_t index = 0;  // of the piece, in the tree
-    for (const LaidPath& path : paths_) {
-      for (const Piece& piece : path.pieces) {
-        const double own = Distance(piece.a, piece.b) * path.filament_per_mm;
-        if (path.solid && own > 0) {
-          for (; next < seen + own; next += filament / kPoints) {
-            const double found =
-                BesideEarlier(Between(piece.a, piece.b, (next - seen) / own), piece, index);
-            if (found < kWidestMm) distances.push_back(found);
-          }
-          seen += own;
-        }
-        ++index;
+    for (uint32_t i = 0; i < tree_.pieces().size(); ++i) {
+      const Piece& piece = tree_.pieces()[i];
+      const LaidPath& path = paths_[piece.path];
+      const double own = Distance(piece.a, piece.b) * path.filament_per_mm;
+      if (!path.solid || own <= 0) continue;
+      for (; next < seen + own; next += filament / kPoints) {
+        const Point at = Between(piece.a, piece.b, (next - seen) / own);
+        const double found = BesideEarlier(at, piece, i);
+        if (found < kWidestMm) distances.push_back(found);
       }
+      seen += own;
     }
     if (distances.empty()) return kUsualMm;
     const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
@@ -183,9 +178,7 @@ double UsualFlow(const std::vector<LaidPath>& paths) {
   double left = 0;
   for (const LaidPath& path : paths) {
     if (!path.solid) continue;
-    double length = 0;
-    for (const Piece& piece : path.pieces) length += Distance(piece.a, piece.b);
-    flows.emplace_back(path.filament_per_mm, path.filament_per_mm * length);
+    flows.emplace_back(path.filament_per_mm, path.filament_per_mm * LengthOf(path.pieces));
     left += flows.back().second;
   }
   std::sort(flows.begin(), flows.end());

@@ -22,10 +22,8 @@ PieceTree::PieceTree(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 }
 
 std::vector<PieceTree::Part> PieceTree::PartsOfPieces() const {
-  double length = 0;
-  for (const Piece& piece : pieces_) length += Distance(piece.a, piece.b);
   const double most = kPartsOfPiece * static_cast<double>(pieces_.size()) + kPartsAlways;
-  const double part_mm = std::max(kPartMm, length / most);
+  const double part_mm = std::max(kPartMm, LengthOf(pieces_) / most);
   std::vector<Part> parts;
   for (uint32_t i = 0; i < pieces_.size(); ++i) {
     const auto& [a, b, path] = pieces_[i];

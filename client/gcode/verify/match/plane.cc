@@ -60,6 +60,12 @@ double DistanceOfPieces(Point a, Point b, Point c, Point d) {
                    DistanceToPiece(d, a, b)});
 }
 
+double LengthOf(absl::Span<const Piece> pieces) {
+  double length = 0;
+  for (const Piece& piece : pieces) length += Distance(piece.a, piece.b);
+  return length;
+}
+
 void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pieces) {
   const TracePath& traced = chunk.paths[path];
   Point at = traced.start;
@@ -96,9 +102,7 @@ void LeaveOutCrowds(std::vector<Piece>& pieces) {
   if (pieces.size() <= kMost) return;
   // They are looked for at each millimeter along the pieces, but at no more than so many places.
   const double most = 8.0 * static_cast<double>(pieces.size()) + (1 << 16);
-  double length = 0;
-  for (const Piece& piece : pieces) length += Distance(piece.a, piece.b);
-  const double step_mm = std::max(1.0, length / most);
+  const double step_mm = std::max(1.0, LengthOf(pieces) / most);
   absl::flat_hash_map<std::pair<double, double>, uint32_t> pieces_at;  // by square millimeter
   std::erase_if(pieces, [&](const Piece& piece) {
     const double steps = std::ceil(Distance(piece.a, piece.b) / step_mm);

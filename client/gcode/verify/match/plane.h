@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
@@ -34,6 +35,8 @@ struct Piece {
   Point b;
   uint32_t path = 0;
 };
+
+double LengthOf(absl::Span<const Piece> pieces);
 
 // Appends the pieces of `path`: arcs become chords that lie within about 0.01 mm of them.
 void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pieces);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
+#include "absl/container/flat_hash_map.h"
 #include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/slacks.h"
 
@@ -23,14 +25,11 @@ constexpr uint32_t kMostAlike = 16;
 class SegmentTable {
  public:
   SegmentTable(const TraceChunk& chunk, uint32_t first, uint32_t end)
-      : chunk_(chunk), first_(first), next_(end - first, kNone), used_(end - first, false) {
-    size_t size = 16;
-    while (size < 2 * static_cast<size_t>(end - first)) size *= 2;
-    slots_.assign(size, {});
+      : first_(first), next_(end - first, kNone), used_(end - first, false) {
+    heads_.reserve(end - first);
     for (uint32_t s = end; s > first; --s) {
-      Slot& slot = slots_[SlotOf(chunk.segments[s - 1].digest)];
-      next_[s - 1 - first] = slot.head;
-      slot = {s - 1, s - 1};
+      uint32_t& head = heads_.try_emplace(chunk.segments[s - 1].digest, kNone).first->second;
+      next_[s - 1 - first] = std::exchange(head, s - 1);
     }
   }
 
@@ -41,8 +40,9 @@ class SegmentTable {
   // each is passed once.
   template <typename Visit>
   void ForEachUnused(uint64_t digest, Visit visit) {
-    uint32_t* at = &slots_[SlotOf(digest)].head;
-    while (*at != kNone) {
+    const auto head = heads_.find(digest);
+    uint32_t* at = head == heads_.end() ? nullptr : &head->second;
+    while (at != nullptr && *at != kNone) {
       uint32_t& next = next_[*at - first_];
       if (Unused(*at)) {
         if (!visit(*at)) return;
@@ -54,25 +54,10 @@ class SegmentTable {
   }
 
  private:
-  struct Slot {
-    uint32_t any = kNone;   // a segment that has the digest; kNone: the slot is empty
-    uint32_t head = kNone;  // the first of those that may be unused
-  };
-
-  // That of the digest, or the empty one where it belongs.
-  size_t SlotOf(uint64_t digest) const {
-    size_t slot = digest & (slots_.size() - 1);
-    while (slots_[slot].any != kNone && chunk_.segments[slots_[slot].any].digest != digest) {
-      slot = (slot + 1) & (slots_.size() - 1);
-    }
-    return slot;
-  }
-
-  const TraceChunk& chunk_;
   const uint32_t first_;
-  std::vector<Slot> slots_;
-  std::vector<uint32_t> next_;  // [segment - first_], of those with the same digest
-  std::vector<bool> used_;      // the same
+  absl::flat_hash_map<uint64_t, uint32_t> heads_;  // the first that may be unused, by digest
+  std::vector<uint32_t> next_;                     // [segment - first_], with the same digest
+  std::vector<bool> used_;                         // the same
 };
 
 class Matcher {

@@ -49,32 +49,22 @@ bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
 
 // The short moves by which travel of the original leaves the paths of some layers, by where they
 // lead from and to: those of new travel are among them.
-class Departures {
- public:
-  Departures(const TraceChunk& was, uint32_t first_link, uint32_t end_link) {
-    for (uint32_t link = first_link; link < end_link; ++link) {
-      double length = 0;
-      for (const TraceMove& move : was.MovesOf(link)) {
-        if (move.sideways()) length += move.length_mm();
-        if (length > kLongestMm) break;
-        if (move.sideways()) ends_.insert(DigestOfEnds(move.from, move.to));
-      }
+absl::flat_hash_set<uint64_t> DeparturesOf(const TraceChunk& was, uint32_t first_link,
+                                           uint32_t end_link) {
+  absl::flat_hash_set<uint64_t> ends;
+  for (uint32_t link = first_link; link < end_link; ++link) {
+    double length = 0;
+    for (const TraceMove& move : was.MovesOf(link)) {
+      if (move.sideways()) length += move.length_mm();
+      if (length > kLongestDepartureMm) break;
+      if (move.sideways()) ends.insert(DigestOfEnds(move.from, move.to));
     }
   }
-
-  bool Have(const TraceMove& move) const {
-    return ends_.contains(DigestOfEnds(move.from, move.to));
-  }
-
-  // Where travel leads along a path's end, or away from it: path_ends.
-  static constexpr double kLongestMm = 1.25;
-
- private:
-  absl::flat_hash_set<uint64_t> ends_;
-};
+  return ends;
+}
 
 // Of the layer and, as travel to it leaves a path of another one, of the layer before.
-std::optional<Departures> DeparturesTo(const LayerPair& layer) {
+std::optional<absl::flat_hash_set<uint64_t>> DeparturesTo(const LayerPair& layer) {
   const std::vector<TraceLayer>& layers = layer.was().layers;
   const auto own = std::find_if(layers.begin(), layers.end(), [&layer](const TraceLayer& other) {
     return other.index == layer.index();
@@ -86,11 +76,12 @@ std::optional<Departures> DeparturesTo(const LayerPair& layer) {
   for (uint32_t s = first.first_section; s < first.end_section; ++s) {
     first_path = std::min(first_path, layer.was().sections[s].first_path);
   }
-  return Departures(layer.was(), first_path, layer.first_path_was() + 1);
+  return DeparturesOf(layer.was(), first_path, layer.first_path_was() + 1);
 }
 
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
-               const std::optional<Departures>& departures, LayerFindings& findings) {
+               const std::optional<absl::flat_hash_set<uint64_t>>& departures,
+               LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceMove* before = nullptr;
   // Up to an unknown line nothing changes: scripts.
@@ -105,9 +96,9 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);
     if (last == nullptr || before == nullptr) continue;
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
-    if (departures ? departures->Have(*last) : last->length_mm() <= Departures::kLongestMm) {
-      continue;
-    }
+    const bool departs = departures ? departures->contains(DigestOfEnds(last->from, last->to))
+                                    : last->length_mm() <= kLongestDepartureMm;
+    if (departs) continue;
     if (SinksBetween(is, link, *last, move)) continue;
     const double bend = BendOf(*last, move);
     if (bend <= kSamePointMm) continue;
@@ -170,9 +161,9 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const double longest = LongestAlong(layer);
   const absl::flat_hash_set<uint32_t> turned = TurnedDepartures(layer);
-  const std::optional<Departures> to_layer = DeparturesTo(layer);
-  const std::optional<Departures> within =
-      Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
+  const auto to_layer = DeparturesTo(layer);
+  const std::optional within =
+      DeparturesOf(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     if (layer.Ended()) return;
     if (layer.IsHidden(link)) continue;

@@ -20,45 +20,22 @@ constexpr double kCellMm = 1.0;
 constexpr size_t kMostPairs = 1000;
 constexpr size_t kPairsAlways = 1 << 20;
 
-enum class Group : uint8_t {
-  kWall,
-  kInfill,
-  kMonotonic,
-  kIroning,
-  kBridge,
-  kSupport,
-  kInterface,
-  kSkirt,
-  kOther
-};
-constexpr size_t kGroups = static_cast<size_t>(Group::kOther) + 1;
-
-Group GroupOf(PathClass path_class, const SlicerSettings& settings) {
+// Paths of one group have the same reasons to keep their order: those of kTop are the lines of a
+// monotonic surface, whatever side it is on, and those of kTower scripts too.
+PathClass GroupOf(PathClass path_class, const SlicerSettings& settings) {
+  if (IsWallClass(path_class)) return PathClass::kWall;
   switch (path_class) {
-    case PathClass::kOuterWall:
-    case PathClass::kInnerWall:
-    case PathClass::kOverhang:
-    case PathClass::kWall:
-      return Group::kWall;
     case PathClass::kTop:
-      return settings.monotonic_top ? Group::kMonotonic : Group::kInfill;
+      return settings.monotonic_top ? PathClass::kTop : PathClass::kInfill;
     case PathClass::kBottom:
-      return settings.monotonic_bottom ? Group::kMonotonic : Group::kInfill;
-    case PathClass::kIroning:
-      return Group::kIroning;
-    case PathClass::kBridge:
-      return Group::kBridge;
-    case PathClass::kSupport:
-      return Group::kSupport;
-    case PathClass::kInterface:
-      return Group::kInterface;
-    case PathClass::kSkirt:
-      return Group::kSkirt;
-    case PathClass::kTower:
+      return settings.monotonic_bottom ? PathClass::kTop : PathClass::kInfill;
+    case PathClass::kUnnamed:
+    case PathClass::kSkin:
+      return PathClass::kInfill;
     case PathClass::kScript:
-      return Group::kOther;
+      return PathClass::kTower;
     default:
-      return Group::kInfill;
+      return path_class;
   }
 }
 
@@ -149,23 +126,23 @@ class OrderKeeper {
   }
 
  private:
-  Group GroupAt(uint32_t path) const { return groups_[path - layer_.first_path_was()]; }
+  PathClass GroupAt(uint32_t path) const { return groups_[path - layer_.first_path_was()]; }
   uint32_t PlaceOf(uint32_t path) const { return place_[path - first_]; }
 
   bool careful() const { return !permissions_.is_free(); }
 
-  bool Matters(Group a, Group b) const {
-    if (a == Group::kOther || b == Group::kOther) return false;
+  bool Matters(PathClass a, PathClass b) const {
+    if (a == PathClass::kTower || b == PathClass::kTower) return false;
     if (a == b) {
-      if (a == Group::kWall) return careful() && !permissions_.wall_order;
-      return (careful() && a == Group::kMonotonic) || a == Group::kIroning;
+      if (a == PathClass::kWall) return careful() && !permissions_.wall_order;
+      return (careful() && a == PathClass::kTop) || a == PathClass::kIroning;
     }
-    const auto is = [a, b](Group group) { return a == group || b == group; };
-    if (is(Group::kIroning) || is(Group::kBridge) || is(Group::kSupport) || is(Group::kInterface) ||
-        is(Group::kSkirt)) {
+    const auto is = [a, b](PathClass group) { return a == group || b == group; };
+    if (is(PathClass::kIroning) || is(PathClass::kBridge) || is(PathClass::kSupport) ||
+        is(PathClass::kInterface) || is(PathClass::kSkirt)) {
       return true;
     }
-    return is(Group::kWall) && !permissions_.infill_order;
+    return is(PathClass::kWall) && !permissions_.infill_order;
   }
 
   // A skirt is seldom near anything, but it must be printed first.
@@ -173,8 +150,8 @@ class OrderKeeper {
     uint32_t latest = 0;  // of those printed so far, the one that is the last in the original
     bool any = false;
     for (const Visit& visit : visits) {
-      if (GroupAt(visit.path) == Group::kOther) continue;
-      if (GroupAt(visit.path) != Group::kSkirt) {
+      if (GroupAt(visit.path) == PathClass::kTower) continue;
+      if (GroupAt(visit.path) != PathClass::kSkirt) {
         if (!any || visit.path > latest) latest = visit.path;
         any = true;
       } else if (any && latest > visit.path) {
@@ -190,7 +167,7 @@ class OrderKeeper {
     uint32_t latest = first_;        // of those printed so far, the last one of the original
     uint32_t latest_tower = first_;  // the same of towers and scripts
     for (const Visit& visit : visits) {
-      const bool tower = GroupAt(visit.path) == Group::kOther;
+      const bool tower = GroupAt(visit.path) == PathClass::kTower;
       const uint32_t behind = tower ? latest : latest_tower;
       if (visit.path < behind) return Report(visit.path, behind, visits, findings);
       latest = std::max(latest, visit.path);
@@ -234,15 +211,15 @@ class OrderKeeper {
     pairs_left_ = kPairsAlways + kMostPairs * pieces.size();
     reported_.assign(place_.size(), false);
     const Cells near(pieces);
-    std::array<Earlier, kGroups> earlier;
+    std::array<Earlier, static_cast<size_t>(PathClass::kCount)> earlier;  // by group
     for (const std::vector<uint32_t>& cell : near.cells()) {
       if (layer_.Ended()) return;
       for (Earlier& of_group : earlier) of_group.pieces.clear();
       for (const uint32_t i : cell) {
         const uint32_t path = pieces[i].path;
-        const Group group = GroupAt(path);
-        for (size_t k = 0; k < kGroups && !reported_[path - first_]; ++k) {
-          if (earlier[k].pieces.empty() || !Matters(group, static_cast<Group>(k))) continue;
+        const PathClass group = GroupAt(path);
+        for (size_t k = 0; k < earlier.size() && !reported_[path - first_]; ++k) {
+          if (earlier[k].pieces.empty() || !Matters(group, static_cast<PathClass>(k))) continue;
           const uint32_t other = TurnedNear(pieces, i, earlier[k]);
           if (other == UINT32_MAX) continue;
           reported_[path - first_] = true;
@@ -287,8 +264,8 @@ class OrderKeeper {
 
   const LayerPair& layer_;
   const VerifyPermissions permissions_;
-  std::vector<Group> groups_;    // [path - first path of the layer]
-  std::vector<uint32_t> place_;  // [path - first path of the section] in the section's visits
+  std::vector<PathClass> groups_;  // [path - first path of the layer]
+  std::vector<uint32_t> place_;    // [path - first path of the section] in the section's visits
   uint32_t first_ = 0;
   bool fans_of_paths_ = true;   // each path of the layer states its own
   std::vector<bool> reported_;  // [path - first_]

@@ -115,9 +115,10 @@ PathClass Find(std::string_view name) {
 
 std::string_view PathClassName(PathClass path_class) {
   constexpr std::string_view kClassNames[] = {
-      "path",    "outer wall",        "inner wall", "overhang wall", "wall",    "infill",
-      "skin",    "top skin",          "bottom",     "bridge",        "ironing", "skirt or brim",
-      "support", "support interface", "tower",      "script"};
+      "path",   "outer wall", "inner wall",        "overhang wall", "wall",
+      "infill", "skin",       "top skin",          "bottom",        "ironing",
+      "bridge", "support",    "support interface", "skirt or brim", "tower",
+      "script"};
   static_assert(std::size(kClassNames) == static_cast<size_t>(PathClass::kCount));
   return kClassNames[static_cast<size_t>(path_class)];
 }

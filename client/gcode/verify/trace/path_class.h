@@ -19,11 +19,11 @@ enum class PathClass : uint8_t {
   kSkin,  // solid infill
   kTop,   // the surface that is visible from above
   kBottom,
-  kBridge,
   kIroning,
-  kSkirt,  // or brim
+  kBridge,
   kSupport,
   kInterface,  // of supports
+  kSkirt,      // or brim
   kTower,
   kScript,
   kCount,

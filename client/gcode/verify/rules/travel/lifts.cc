@@ -25,20 +25,19 @@ struct Height {
   float length_mm = 0;
 };
 
-Height HeightOf(const LiftLog& log, const TravelProfile& travel) {
+Height HeightOf(const TravelProfile& travel) {
   Height height;
-  for (uint32_t i = travel.first; i < travel.end; ++i) {
-    height.apex_mm = std::max(height.apex_mm, log.pieces[i].to_mm);
-    height.length_mm += log.pieces[i].length_mm;
+  for (const TravelProfile::Piece& piece : travel.pieces) {
+    height.apex_mm = std::max(height.apex_mm, piece.to_mm);
+    height.length_mm += piece.length_mm;
   }
   return height;
 }
 
-// The length of the travel that is lower than `lift`.
-float LowLength(const LiftLog& log, const TravelProfile& travel, float lift) {
+// The length of the pieces of travel that is lower than `lift`.
+float LowLength(absl::Span<const TravelProfile::Piece> pieces, float lift) {
   float low = 0;
-  for (uint32_t i = travel.first; i < travel.end; ++i) {
-    const TravelProfile::Piece& piece = log.pieces[i];
+  for (const TravelProfile::Piece& piece : pieces) {
     const float from = piece.from_mm - lift + static_cast<float>(kHeightSlackMm);
     const float to = piece.to_mm - lift + static_cast<float>(kHeightSlackMm);
     if (from >= 0 && to >= 0) continue;
@@ -49,12 +48,10 @@ float LowLength(const LiftLog& log, const TravelProfile& travel, float lift) {
   return low;
 }
 
-bool EndsLow(const LiftLog& log, const TravelProfile& travel, float lift) {
-  return std::any_of(log.pieces.begin() + travel.first, log.pieces.begin() + travel.end,
-                     [lift](const TravelProfile::Piece& piece) {
-                       return piece.to_mm < lift - kHeightSlackMm &&
-                              piece.length_mm > kLeastTravelMm;
-                     });
+bool EndsLow(const TravelProfile& travel, float lift) {
+  return std::any_of(travel.pieces.begin(), travel.pieces.end(), [lift](const auto& piece) {
+    return piece.to_mm < lift - kHeightSlackMm && piece.length_mm > kLeastTravelMm;
+  });
 }
 
 // What travel of one kind does.
@@ -67,11 +64,11 @@ struct Habit {
   bool may_end_low = false;
 };
 
-Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
+Habit HabitOf(absl::Span<const TravelProfile> travels) {
   Habit habit;
   size_t lifted = 0;
   for (const TravelProfile& travel : travels) {
-    const float apex = HeightOf(log, travel).apex_mm;
+    const float apex = HeightOf(travel).apex_mm;
     if (apex < kLiftedMm) continue;
     if (++lifted == 1 || apex < habit.least_mm) {
       habit.least_mm = apex;
@@ -85,11 +82,11 @@ Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
   std::vector<float> low_share;
   size_t end_low = 0;
   for (const TravelProfile& travel : travels) {
-    const Height height = HeightOf(log, travel);
+    const Height height = HeightOf(travel);
     if (height.apex_mm < kLiftedMm) continue;
-    low_mm.push_back(LowLength(log, travel, habit.least_mm));
+    low_mm.push_back(LowLength(travel.pieces, habit.least_mm));
     low_share.push_back(low_mm.back() / height.length_mm);
-    if (EndsLow(log, travel, habit.least_mm)) ++end_low;
+    if (EndsLow(travel, habit.least_mm)) ++end_low;
   }
   habit.may_end_low =
       static_cast<double>(end_low) > (1 - kUsualShare) * static_cast<double>(lifted);
@@ -145,7 +142,6 @@ class LinkProfiles {
     base_mm_ = std::max(to_mm_, z_mm);
     travel_ = {.at = {0, layer_.index()}};
     if (link_ > 0) travel_.ends = EndsOf(side_.chunk, link_);
-    travel_.first = static_cast<uint32_t>(seen_.lifts.pieces.size());
     length_mm_ = 0;
     counts_ = false;
   }
@@ -155,9 +151,9 @@ class LinkProfiles {
     if (travel_.at.line == 0) travel_.at.line = move.line;
     length_mm_ += move.length_mm();
     counts_ |= counts;
-    seen_.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm_),
-                                  static_cast<float>(move.z_to_mm - base_mm_),
-                                  static_cast<float>(move.length_mm())});
+    travel_.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm_),
+                              static_cast<float>(move.z_to_mm - base_mm_),
+                              static_cast<float>(move.length_mm())});
     if (!move.states_z || !counts) return;
     const int64_t um = std::llround((move.z_to_mm - to_mm_) * 1000);
     const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
@@ -172,15 +168,11 @@ class LinkProfiles {
   }
 
   void End() {
-    if (length_mm_ < kLeastMoveMm || !counts_) {
-      seen_.lifts.pieces.resize(travel_.first);
-      return;
-    }
-    travel_.end = static_cast<uint32_t>(seen_.lifts.pieces.size());
+    if (length_mm_ < kLeastMoveMm || !counts_) return;
     const bool between = side_.chunk.links[link_].new_layer || !level_;
     const bool crossing = layer_.CrossingLength(side_.chunk, link_, !retracted_) > 0;
-    seen_.lifts.travels[(retracted_ ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)]
-        .push_back(travel_);
+    seen_.travels[(retracted_ ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
+        std::move(travel_));
   }
 
   const LayerPair& layer_;
@@ -221,29 +213,27 @@ absl::Span<const TravelProfile> OfLayer(const std::vector<TravelProfile>& travel
 }
 
 // Some slicers lift only in some layers: above a height, or below it.
-Habit HabitOfLayer(const LiftLog& log, const std::vector<TravelProfile>& travels, int64_t layer) {
+Habit HabitOfLayer(const std::vector<TravelProfile>& travels, int64_t layer) {
   const absl::Span<const TravelProfile> own = OfLayer(travels, layer);
-  return own.size() < kFewestOfLayer ? Habit() : HabitOf(log, own);
+  return own.size() < kFewestOfLayer ? Habit() : HabitOf(own);
 }
 
 // Whether the original has equally low travel between the same two points of the layer.
-bool WasAsLow(const LiftLog& was, const LiftLog& is, const TravelProfile& travel, size_t kind,
-              float lift) {
-  const absl::Span<const TravelProfile> travels = OfLayer(was.travels[kind], travel.at.layer);
-  const Height now = HeightOf(is, travel);
+bool WasAsLow(const std::vector<TravelProfile>& were, const TravelProfile& travel, float lift) {
+  const absl::Span<const TravelProfile> travels = OfLayer(were, travel.at.layer);
+  const Height now = HeightOf(travel);
   return std::any_of(travels.begin(), travels.end(), [&](const TravelProfile& before) {
     if (before.ends != travel.ends) return false;
-    const Height then = HeightOf(was, before);
+    const Height then = HeightOf(before);
     return now.apex_mm >= then.apex_mm - kHeightSlackMm &&
-           LowLength(is, travel, lift) <= LowLength(was, before, lift) + kLeastMoveMm &&
-           (!EndsLow(is, travel, lift) || EndsLow(was, before, lift));
+           LowLength(travel.pieces, lift) <= LowLength(before.pieces, lift) + kLeastMoveMm &&
+           (!EndsLow(travel, lift) || EndsLow(before, lift));
   });
 }
 
 // True if the travel begins with a slope as steep as one of the original's.
-bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
-                          const TravelProfile& travel) {
-  const TravelProfile::Piece& piece = log.pieces[travel.first];
+bool BeginsWithUsualSlope(const Observations& was, const TravelProfile& travel) {
+  const TravelProfile::Piece& piece = travel.pieces.front();
   const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLeastTravelMm);
   // Heights are rounded to micrometres.
   const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
@@ -252,44 +242,39 @@ bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
 
 // The same, and it is not low behind that slope: on the slope itself it is no lower than such
 // travel of the original, whatever part of it that is.
-bool RisesAsUsual(const Observations& was, const LiftLog& log, const TravelProfile& travel,
-                  float lift) {
-  TravelProfile behind = travel;
-  ++behind.first;
-  return BeginsWithUsualSlope(was, log, travel) && LowLength(log, behind, lift) <= kLeastMoveMm;
+bool RisesAsUsual(const Observations& was, const TravelProfile& travel, float lift) {
+  const absl::Span<const TravelProfile::Piece> pieces = travel.pieces;
+  return BeginsWithUsualSlope(was, travel) && LowLength(pieces.subspan(1), lift) <= kLeastMoveMm;
 }
 
 // All of it is a slope, as short as it is, where longer travel begins with one.
-bool RisesAllAlong(const Observations& was, const LiftLog& log, const TravelProfile& travel) {
-  const TravelProfile::Piece& piece = log.pieces[travel.first];
-  return travel.end == travel.first + 1 && piece.to_mm > piece.from_mm && !was.slopes.empty();
+bool RisesAllAlong(const Observations& was, const TravelProfile& travel) {
+  const TravelProfile::Piece& piece = travel.pieces.front();
+  return travel.pieces.size() == 1 && piece.to_mm > piece.from_mm && !was.slopes.empty();
 }
 
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
                  std::vector<Finding>& breaks) {
   // Of a kind that the original has none of, the nearest one tells.
-  const std::vector<TravelProfile>& travels =
-      was.lifts.travels[kind].empty() ? was.lifts.travels[kind ^ 1] : was.lifts.travels[kind];
-  const Habit of_print = HabitOf(was.lifts, travels);
+  const Habit of_print = HabitOf(was.travels[was.travels[kind].empty() ? kind ^ 1 : kind]);
   Habit of_layer;
   int64_t layer = -1;
-  for (const TravelProfile& travel : is.lifts.travels[kind]) {
+  for (const TravelProfile& travel : is.travels[kind]) {
     if (!of_print.lifts && travel.at.layer != layer) {
       layer = travel.at.layer;
-      of_layer = HabitOfLayer(was.lifts, was.lifts.travels[kind], layer);
+      of_layer = HabitOfLayer(was.travels[kind], layer);
     }
     const Habit& habit = of_print.lifts ? of_print : of_layer;
     if (!habit.lifts) continue;
-    const Height height = HeightOf(is.lifts, travel);
-    const float low = LowLength(is.lifts, travel, habit.least_mm);
-    const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, travel, habit.least_mm);
-    const bool lies_low =
-        low > kLeastTravelMm && !RisesAsUsual(was, is.lifts, travel, habit.least_mm) &&
-        (low > habit.low_mm ||
-         (low / height.length_mm > habit.low_share && !RisesAllAlong(was, is.lifts, travel)));
+    const Height height = HeightOf(travel);
+    const float low = LowLength(travel.pieces, habit.least_mm);
+    const bool ends_low = !habit.may_end_low && EndsLow(travel, habit.least_mm);
+    const bool lies_low = low > kLeastTravelMm && !RisesAsUsual(was, travel, habit.least_mm) &&
+                          (low > habit.low_mm || (low / height.length_mm > habit.low_share &&
+                                                  !RisesAllAlong(was, travel)));
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
-    if (WasAsLow(was.lifts, is.lifts, travel, kind, habit.least_mm)) continue;
+    if (WasAsLow(was.travels[kind], travel, habit.least_mm)) continue;
     breaks.push_back({VerifyRule::kLifts, habit.least_line, travel.at,
                       absl::StrFormat("%.2f of %.2f mm of this travel are less than %.2f mm above "
                                       "the layer, the least lift of %s",
