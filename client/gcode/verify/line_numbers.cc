@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <string>
 #include <utility>
 
+#include "client/files/md5.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
 
 std::optional<int64_t> NumberOf(std::string_view line, size_t& used) {
-  if (!Begins(line, "N")) return std::nullopt;
+  if (!line.starts_with("N")) return std::nullopt;
   int64_t number = -1;
   const auto read = std::from_chars(line.data() + 1, line.data() + line.size(), number);
   if (read.ec != std::errc{} || number < 0 || number > int64_t{1} << 40) return std::nullopt;
@@ -88,7 +90,7 @@ class NumberReader {
 }  // namespace
 
 std::optional<Unnumbered> WithoutNumbers(std::string_view text) {
-  if (!Begins(text, "N") && text.find("\nN") == std::string_view::npos) return std::nullopt;
+  if (!text.starts_with("N") && text.find("\nN") == std::string_view::npos) return std::nullopt;
   NumberReader reader;
   while (!text.empty()) {
     const size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
@@ -98,6 +100,15 @@ std::optional<Unnumbered> WithoutNumbers(std::string_view text) {
     text.remove_prefix(end);
   }
   return reader.Result();
+}
+
+bool HasRightMd5(std::string_view text) {
+  constexpr std::string_view kBefore = "; MD5:";
+  const size_t end = text.find('\n');
+  if (!text.starts_with(kBefore) || end == std::string_view::npos) return false;
+  const std::string_view stated = TrimLine(text.substr(kBefore.size(), end - kBefore.size()));
+  const std::string is = Md5Hex(text.substr(end + 1));
+  return !is.empty() && EqualsInAnyCase(stated, is);
 }
 
 }  // namespace traverse::gcode

@@ -1,4 +1,5 @@
-// Checks numbers and checksums of lines for the verifier: would a machine accept them?
+// Checks numbers and checksums of lines for the verifier: would a machine accept them? And the
+// digest that a file may state of itself.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_LINE_NUMBERS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_LINE_NUMBERS_H_
@@ -21,6 +22,10 @@ struct Unnumbered {
 
 // Unset for any other text.
 std::optional<Unnumbered> WithoutNumbers(std::string_view text);
+
+// True if the first line of `text` is `; MD5:` and the 32 hexadecimal digits of the MD5 of all that
+// follows it. Such lines are equal in two texts, whatever these are; a wrong one is a comment.
+bool HasRightMd5(std::string_view text);
 
 }  // namespace traverse::gcode
 

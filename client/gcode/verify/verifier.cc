@@ -20,7 +20,6 @@
 #include "client/gcode/verify/rules/rest.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
-#include "client/gcode/verify/stated_digest.h"
 #include "client/gcode/verify/text.h"
 #include "client/gcode/verify/trace/side_reader.h"
 
@@ -55,14 +54,14 @@ class Verifier {
         rules_(options.rules),
         threads_(ThreadsFor(original.text.size())),
         limit_(options.limit),
+        context_{options.permissions.value_or(
+                     PermissionsInHead(optimised.text).value_or(VerifyPermissions{})),
+                 ReadSettings(original.text)},
+        obstacles_(context_.settings, limit_),
         was_(original.text, kOptimisedMark, HasLayerMarks(original.text), original.right_digest,
              limit_),
         is_(optimised.text, kOptimisedMark, HasLayerMarks(original.text), optimised.right_digest,
             limit_) {
-    context_.permissions = options.permissions.value_or(
-        PermissionsInHead(optimised.text).value_or(VerifyPermissions{}));
-    context_.settings = ReadSettings(original.text);
-    obstacles_.emplace(context_.settings, limit_);
     report_.permissions = context_.permissions;
     const bool rests =
         !context_.permissions.is_free() && (rules_ & RuleBit(VerifyRule::kRest)) != 0;
@@ -94,8 +93,8 @@ class Verifier {
   const uint32_t rules_;
   const int threads_;
   const WorkLimit limit_;
-  RuleContext context_;
-  std::optional<Obstacles> obstacles_;
+  const RuleContext context_;
+  Obstacles obstacles_;
   SideReader was_;
   SideReader is_;
   TraceChunk next_was_;  // the one after chunk_was_
@@ -272,7 +271,7 @@ void Verifier::CheckChunk() {
   if (limit_.Ended()) return;
   for (size_t i = 0; i < layers; ++i) {
     const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];
-    layer_lines_.push_back(chunk_is_.LineOf(chunk_is_.paths[section.first_path]));
+    layer_lines_.push_back(chunk_is_.LineOf(section.first_path));
     path_lines_.Append(lines[i]);
     seen_was_.Append(found[i].was);
     seen_is_.Append(found[i].is);
@@ -296,9 +295,9 @@ void Verifier::CheckChunk() {
 // One layer after the other: what stands is what was printed before.
 void Verifier::CheckObstacles(size_t layers) {
   for (size_t i = 0; i < layers; ++i) {
-    obstacles_->CheckLayer(chunk_was_, chunk_is_, i, findings_);
+    obstacles_.CheckLayer(chunk_was_, chunk_is_, i, findings_);
   }
-  if (!more_) obstacles_->CheckEnd(chunk_was_, chunk_is_, findings_);
+  if (!more_) obstacles_.CheckEnd(chunk_was_, chunk_is_, findings_);
 }
 
 void Verifier::Compare(std::vector<Finding>& breaks) const {
@@ -316,7 +315,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
 }
 
 int64_t Verifier::LayerOf(uint32_t optimised_line) const {
-  const auto behind = std::upper_bound(layer_lines_.begin(), layer_lines_.end(), optimised_line);
+  const auto behind = std::ranges::upper_bound(layer_lines_, optimised_line);
   return behind - layer_lines_.begin() - 1;
 }
 
@@ -349,7 +348,7 @@ void Verifier::CheckText() {
     findings_.push_back({VerifyRule::kSamePrint, 1, static_cast<uint32_t>(is_.cut().last_ignored),
                          "one more line that says by what this file was optimised"});
   }
-  if (Begins(original_.text, kMarkOfUtf8) != Begins(optimised_.text, kMarkOfUtf8)) {
+  if (original_.text.starts_with(kMarkOfUtf8) != optimised_.text.starts_with(kMarkOfUtf8)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, 1,
                          "only one of the files begins with a byte order mark of UTF-8"});
   }
@@ -365,8 +364,8 @@ void Verifier::CheckText() {
 void Verifier::Finish() {
   CheckText();
   Compare(findings_);
-  std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
-    return std::pair(a.rule, a.at.line) < std::pair(b.rule, b.at.line);
+  std::ranges::stable_sort(findings_, {}, [](const Finding& finding) {
+    return std::pair(finding.rule, finding.at.line);
   });
   for (Finding& finding : findings_) Add(std::move(finding));
 }

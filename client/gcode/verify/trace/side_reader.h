@@ -20,7 +20,7 @@ bool HasLayerMarks(std::string_view text);
 class SideReader {
  public:
   // Ignores comments that begin with `ignored`. `right_digest`: the first line states the digest
-  // of the file, which `text` need not have (stated_digest.h). Reads nothing more once `limit`
+  // of the file, which `text` need not have (line_numbers.h). Reads nothing more once `limit`
   // ends.
   SideReader(std::string_view text, std::string_view ignored, bool marked, bool right_digest,
              const WorkLimit& limit);

@@ -72,11 +72,11 @@ struct TracePath {
   double z_mm = 0;
   float length_mm = 0;
   float filament_mm = 0;
-  double begun_seconds = 0;   // since the file began: Clock
+  double begun_seconds = 0;   // since the file began: clock.h
   double left_seconds = 0;    // when it ends
   Micro feed = 0;             // of its last segment
-  uint64_t fan = 0;           // VerifyMachine::fan at its first segment
-  uint64_t acceleration = 0;  // VerifyMachine::PathAccelerationDigest there
+  uint64_t fan = 0;           // PrintSettings::fan at its first segment
+  uint64_t acceleration = 0;  // PrintSettings::PathAccelerationDigest there
   bool states_fan = false;    // a fan is set before it, behind the path before
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // part of it is of class kOverhang
@@ -108,7 +108,7 @@ std::string_view MoveKindName(MoveKind kind);
 
 struct TraceMove {
   uint64_t identity = 0;      // from, to, filament, speed, acceleration
-  uint64_t acceleration = 0;  // VerifyMachine::AccelerationDigest
+  uint64_t acceleration = 0;  // PrintSettings::AccelerationDigest
   uint64_t tool = 0;
   Point from;
   Point to;
@@ -196,7 +196,7 @@ struct Progress {
   uint32_t line = 0;
   uint32_t section = 0;
   double percent = -1;  // of the print that it states as done; less than 0: none
-  double seconds = 0;   // since the file began: Clock
+  double seconds = 0;   // since the file began: clock.h
 
   // Where such a line may stand: where the deposits before it and behind it begin and end.
   std::array<double, 4> places{};
@@ -222,13 +222,14 @@ struct TraceChunk {
   std::vector<TraceSection> sections;
   std::vector<TraceLayer> layers;
   uint32_t end_section = 0;  // index of the section behind the last one that is whole
-  double seconds = 0;        // since the file began, up to where the chunk ends: Clock
+  double seconds = 0;        // since the file began, up to where the chunk ends: clock.h
 
   Point StartOf(const TracePath& path, uint32_t segment) const {
     return segment == path.first_segment ? path.start : segments[segment - 1].end;
   }
   Point EndOf(const TracePath& path) const { return segments[path.end_segment - 1].end; }
   uint32_t LineOf(const TracePath& path) const { return segments[path.first_segment].line; }
+  uint32_t LineOf(uint32_t path) const { return LineOf(paths[path]); }
 
   absl::Span<const TraceSegment> SegmentsOf(const TraceSection& section) const {
     const uint32_t first = paths[section.first_path].first_segment;
