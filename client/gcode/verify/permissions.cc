@@ -40,7 +40,7 @@ std::string_view TakeWord(std::string_view& text, std::string_view ends) {
 absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
                                                    std::string_view allow) {
   VerifyPermissions permissions;
-  const auto* name = std::find(std::begin(kPolicyNames), std::end(kPolicyNames), policy);
+  const auto* name = std::ranges::find(kPolicyNames, policy);
   if (name == std::end(kPolicyNames)) {
     return absl::InvalidArgumentError(absl::StrCat("no such policy: ", std::string(policy),
                                                    "; there are safe, balanced, free and fast"));
@@ -48,8 +48,8 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
   permissions.policy = static_cast<Policy>(name - std::begin(kPolicyNames));
   while (!allow.empty()) {
     const std::string_view word = TakeWord(allow, ",+");
-    const auto* known = std::find_if(std::begin(kPermissions), std::end(kPermissions),
-                                     [word](const Permission& p) { return p.name == word; });
+    const auto* known =
+        std::ranges::find_if(kPermissions, [word](const Permission& p) { return p.name == word; });
     if (known == std::end(kPermissions)) {
       return absl::InvalidArgumentError(absl::StrCat(
           "nothing to allow by the name `", std::string(word),
@@ -65,13 +65,13 @@ std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
   constexpr std::string_view kPolicy = ", policy ";
   constexpr std::string_view kAllow = " allow ";
   constexpr std::string_view kMaxHidden = " max_hidden_travel ";
-  if (gcode::Begins(text, gcode::kMarkOfUtf8)) text.remove_prefix(gcode::kMarkOfUtf8.size());
+  if (text.starts_with(gcode::kMarkOfUtf8)) text.remove_prefix(gcode::kMarkOfUtf8.size());
   while (!text.empty()) {
     std::string_view line = TakeWord(text, "\n");
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
     if (line.empty()) continue;
     if (line[0] != ';') return std::nullopt;
-    if (!gcode::Begins(line, kOptimisedMark)) continue;
+    if (!line.starts_with(kOptimisedMark)) continue;
     const size_t at = line.find(kPolicy);
     if (at == std::string_view::npos) return std::nullopt;
     std::string_view rest = line.substr(at + kPolicy.size());
@@ -81,9 +81,9 @@ std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
     double longest = VerifyPermissions::kUsualHiddenTravelMm;
     while (!clause.empty()) {
       const std::string_view part = TakeWord(clause, ",");
-      if (gcode::Begins(part, kAllow)) {
+      if (part.starts_with(kAllow)) {
         allow = part.substr(kAllow.size());
-      } else if (gcode::Begins(part, kMaxHidden) &&
+      } else if (part.starts_with(kMaxHidden) &&
                  (!absl::SimpleAtod(std::string(part.substr(kMaxHidden.size())), &longest) ||
                   !(longest >= 0 && longest <= VerifyPermissions::kMostHiddenTravelMm))) {
         return std::nullopt;

@@ -29,16 +29,16 @@ bool IsStateComment(const VerifyLine& line) {
 // Waiting or not: of the nozzle, the bed, the chamber, the heat break.
 bool Heats(std::string_view text) {
   constexpr std::string_view kCommands[] = {"M104", "M109", "M140", "M190", "M141", "M142"};
-  return std::any_of(std::begin(kCommands), std::end(kCommands),
-                     [text](std::string_view command) { return Begins(text, command); });
+  return std::ranges::any_of(
+      kCommands, [text](std::string_view command) { return text.starts_with(command); });
 }
 
 // Comments that slicers put after the mark of a layer, where scripts look for them.
 bool SaysOfLayer(std::string_view text) {
   constexpr std::string_view kNotes[] = {
       ";Z:", ";HEIGHT:", "; Z_HEIGHT:", "; LAYER_HEIGHT:", "; layer num"};
-  return std::any_of(std::begin(kNotes), std::end(kNotes),
-                     [text](std::string_view note) { return Begins(text, note); });
+  return std::ranges::any_of(kNotes,
+                             [text](std::string_view note) { return text.starts_with(note); });
 }
 
 }  // namespace
@@ -53,10 +53,10 @@ bool SectionCutter::Ignores(const VerifyLine& line) {
   if (line.text.empty()) return false;
   in_head_ = in_head_ && (line.text[0] == ';' || line.number == 1);
   if (!in_head_ || line.role != LineRole::kComment) return false;
-  if (Begins(line.text, "; thumbnail")) {
+  if (line.text.starts_with("; thumbnail")) {
     in_picture_ = line.text.find(" begin") != std::string_view::npos;
   }
-  if (in_picture_ || !Begins(line.text, ignored_)) return false;
+  if (in_picture_ || !line.text.starts_with(ignored_)) return false;
   ++cut_.ignored;
   cut_.last_ignored = line.number;
   return true;
@@ -184,10 +184,10 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   const bool end = fence == kEndOfText;
   if (fixed) {
     section_.head = machine.at();
-    section_.settings = machine.SettingsDigest();
+    section_.settings = machine.settings().SettingsDigest();
   }
   // A change of height is not a line: the state there may still change before it prints.
-  if (fence != 0) section_.fan = machine.fan();
+  if (fence != 0) section_.fan = machine.settings().fan();
   section_.label = label;
   section_.lift = label && has_height_ ? machine.z() - height_ : 0;
   if (end) section_.head[2] = machine.z();

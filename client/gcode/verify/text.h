@@ -9,10 +9,6 @@
 
 namespace traverse::gcode {
 
-inline bool Begins(std::string_view text, std::string_view with) {
-  return text.substr(0, with.size()) == with;
-}
-
 // The byte order mark of UTF-8, with which some editors begin a text.
 inline constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
 

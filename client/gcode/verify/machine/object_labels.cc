@@ -92,7 +92,7 @@ bool ObjectLabels::Take(std::string_view line) {
   if (line.empty()) return false;
   if (line[0] == ';') {
     for (const Mark& mark : kMarks) {
-      if (!Begins(line, mark.prefix)) continue;
+      if (!line.starts_with(mark.prefix)) continue;
       rest = TrimLine(line.substr(mark.prefix.size()));
       (this->*mark.take)(mark.notation, rest == mark.none ? std::string_view() : rest);
       return true;
@@ -119,7 +119,7 @@ bool ObjectLabels::Take(std::string_view line) {
   } else if (IsCommand(line, "M486", rest)) {
     if (!BeginsInAnyCase(rest, "S")) return true;
     const std::string_view number = TrimLine(rest.substr(1));
-    Switch(kM486, Begins(number, "-") ? std::string_view() : number);
+    Switch(kM486, number.starts_with("-") ? std::string_view() : number);
   } else {
     return false;
   }
@@ -127,7 +127,7 @@ bool ObjectLabels::Take(std::string_view line) {
 }
 
 uint64_t ObjectLabels::digest() const {
-  const bool any = std::any_of(open_.begin(), open_.end(), [](uint64_t name) { return name != 0; });
+  const bool any = std::ranges::any_of(open_, [](uint64_t name) { return name != 0; });
   uint64_t digest = 0;
   for (const uint64_t name : open_) digest = Mix(digest, name);
   return any ? digest | 1 : 0;

@@ -42,7 +42,13 @@ void PrintSettings::Set(size_t slot, uint64_t value) {
 }
 
 bool NamesFeature(std::string_view comment) {
-  return Begins(comment, ";TYPE:") || Begins(comment, "; FEATURE:");
+  return comment.starts_with(";TYPE:") || comment.starts_with("; FEATURE:");
+}
+
+std::optional<bool> BeginsWipe(std::string_view comment) {
+  if (comment == ";WIPE_START" || comment == "; WIPE_START") return true;
+  if (comment == ";WIPE_END" || comment == "; WIPE_END") return false;
+  return std::nullopt;
 }
 
 bool PrintSettings::SetByComment(std::string_view text) {
@@ -50,17 +56,18 @@ bool PrintSettings::SetByComment(std::string_view text) {
       {";TYPE:", kType},         {"; FEATURE:", kType}, {";WIDTH:", kWidth},
       {"; LINE_WIDTH:", kWidth}, {";HEIGHT:", kHeight}, {"; LAYER_HEIGHT:", kHeight}};
   for (const auto& [mark, slot] : kMarks) {
-    if (!Begins(text, mark)) continue;
+    if (!text.starts_with(mark)) continue;
     Set(slot, DigestOf(TrimLine(text.substr(mark.size()))));
     return true;
   }
   // Names of features in the words of slicers without such marks.
-  const bool other_quote = Begins(text, "; '") && text.find(" Path',") == std::string_view::npos;
+  const bool other_quote =
+      text.starts_with("; '") && text.find(" Path',") == std::string_view::npos;
   if (!other_quote && ClassOfComment(text)) {
     Set(kType, DigestOf(text));
     return true;
   }
-  if (!Begins(text, "; tool H")) return false;
+  if (!text.starts_with("; tool H")) return false;
   Set(kWidth, DigestOf(text));
   Set(kHeight, DigestOf(text));
   return true;
@@ -87,8 +94,8 @@ void PrintSettings::RenewFan() {
 // All of `values`, or none if there would be too many names.
 bool PrintSettings::SetNamed(const std::vector<NamedValue>& values) {
   const auto place_of = [this](uint64_t key) {
-    const auto known = std::find_if(named_.begin(), named_.end(),
-                                    [key](const Named& named) { return named.key == key; });
+    const auto known =
+        std::ranges::find_if(named_, [key](const Named& named) { return named.key == key; });
     return static_cast<size_t>(known - named_.begin());
   };
   for (const NamedValue& given : values) {
@@ -228,7 +235,7 @@ std::optional<PrintSettings::Parameters> PrintSettings::ParametersIn(std::string
 bool PrintSettings::SetByKlipper(std::string_view text) {
   const size_t end = std::min(text.find_first_of(" \t;"), text.size());
   const std::string_view command = text.substr(0, end);
-  const bool known = Begins(command, "SET_");
+  const bool known = command.starts_with("SET_");
   const auto parameters = known ? ParametersIn(text.substr(end)) : std::nullopt;
   if (!parameters) return false;
   if (command == "SET_PRESSURE_ADVANCE") return SetPressure(*parameters);
@@ -268,9 +275,8 @@ bool PrintSettings::SetLimits(const Parameters& parameters) {
   };
   std::vector<std::pair<size_t, uint64_t>> settings;
   for (const auto& parameter : parameters) {
-    const auto known =
-        std::find_if(std::begin(kNames), std::end(kNames),
-                     [&parameter](const auto& entry) { return entry.first == parameter.first; });
+    const auto known = std::ranges::find_if(
+        kNames, [&parameter](const auto& entry) { return entry.first == parameter.first; });
     if (known == std::end(kNames)) return false;
     settings.emplace_back(known->second, parameter.second);
   }
@@ -294,8 +300,8 @@ bool PrintSettings::SetNamedByKlipper(std::string_view command, const Parameters
        "SHAPER_FREQ_X SHAPER_FREQ_Y SHAPER_TYPE SHAPER_TYPE_X SHAPER_TYPE_Y DAMPING_RATIO_X "
        "DAMPING_RATIO_Y"},
   };
-  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
-                                 [command](const Kind& one) { return one.command == command; });
+  const auto kind =
+      std::ranges::find_if(kKinds, [command](const Kind& one) { return one.command == command; });
   if (kind == std::end(kKinds)) return false;
   uint64_t of = DigestOf(command);
   bool named = kind->name.empty();

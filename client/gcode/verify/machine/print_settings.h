@@ -19,6 +19,9 @@ namespace traverse::gcode {
 // `;TYPE:Perimeter`, `; FEATURE: Inner wall`: the comment says of what the following paths are.
 bool NamesFeature(std::string_view comment);
 
+// Whether a mark of a wipe is that of its begin; nothing if the comment is none.
+std::optional<bool> BeginsWipe(std::string_view comment);
+
 // Values are digests or numbers, to be compared; 0 where nothing was set yet.
 class PrintSettings {
  public:
@@ -58,7 +61,7 @@ class PrintSettings {
     return path_acceleration_digest_;
   }
 
-  // Of all but what comments say.
+  // Of all but what comments say: what a line may depend on of which no more is known.
   uint64_t SettingsDigest() const;
 
   uint64_t fan() const { return fan_; }

@@ -116,22 +116,20 @@ void VerifyMachine::Do(VerifyLine& line) {
 void VerifyMachine::DoComment(VerifyLine& line) {
   const std::string_view text = line.text;
   if (settings_.SetByComment(text)) return;
-  for (const std::string_view wipe : {";WIPE_START", ";WIPE_END", "; WIPE_START", "; WIPE_END"}) {
-    if (text == wipe) return;
-  }
+  if (BeginsWipe(text)) return;
   for (const std::string_view mark :
        {";LAYER_CHANGE", ";LAYER:", ";LAYER ", "; CHANGE_LAYER", ";MESH:", "; printing object",
         "; stop printing object", "; start printing object",
         "; OBJECT_ID:", ";layer:", "; BEGIN_LAYER_OBJECT", "; END_LAYER_OBJECT", "; <layer>",
         "; </layer>", ";; --- layer ", ";PRINTING:", ";PRINTING_ID:"}) {
-    if (!Begins(text, mark)) continue;
+    if (!text.starts_with(mark)) continue;
     line.label = text.find("printing object") != std::string_view::npos;
     return Fence(line, LineRole::kFence);
   }
   constexpr std::string_view kNumbered = "; layer ";
   const bool numbered = text.size() > kNumbered.size() && text[kNumbered.size()] >= '0' &&
                         text[kNumbered.size()] <= '9';
-  if (numbered && Begins(text, kNumbered)) return Fence(line, LineRole::kFence);
+  if (numbered && text.starts_with(kNumbered)) return Fence(line, LineRole::kFence);
   Fence(line, CommentTellsProgress(text) ? LineRole::kProgress : LineRole::kComment);
 }
 

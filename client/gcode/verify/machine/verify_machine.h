@@ -88,14 +88,8 @@ class VerifyMachine {
     return motion_;
   }
 
-  // Of the accelerations, jerks and limits in force, those of travel included.
-  uint64_t AccelerationDigest() { return settings_.AccelerationDigest(); }
-  uint64_t PathAccelerationDigest() { return settings_.PathAccelerationDigest(); }
-
-  // Of all that is set but by comments: what a line may depend on of which no more is known.
-  uint64_t SettingsDigest() const { return settings_.SettingsDigest(); }
-
-  uint64_t fan() const { return settings_.fan(); }
+  PrintSettings& settings() { return settings_; }
+  const PrintSettings& settings() const { return settings_; }
 
   const TextLines& lines() const { return lines_; }  // taken so far
 

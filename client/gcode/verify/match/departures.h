@@ -1,13 +1,18 @@
-// The short move with which travel leaves a path before it retracts, so that nothing of that shows
+// What the moves of a link tell by themselves: where it leads from and to, and how travel leaves
+// the path before it: some slicers move a little before they retract, so that nothing of that shows
 // on a wall.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_DEPARTURES_H_
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
 
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/slacks.h"
+#include "client/gcode/verify/text.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
@@ -16,8 +21,8 @@ inline bool Retracts(const TraceMove& move) {
   return move.kind == MoveKind::kRetraction || (move.kind == MoveKind::kWipe && move.filament < 0);
 }
 
-// That of `link`; nothing if there is none. The head may rise to the next layer before it retracts,
-// and wait.
+// The short move with which travel leaves the path before `link`; nothing if there is none. The
+// head may rise to the next layer before it retracts, and wait.
 inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
   constexpr double kLongestMm = 1.0;
   const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
@@ -35,10 +40,22 @@ inline const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t link) {
 // How many of the first of `moves` are no longer than `most_mm` together.
 inline uint32_t MovesWithin(absl::Span<const TraceMove> moves, double most_mm) {
   double length = 0;
-  const auto behind = std::find_if(moves.begin(), moves.end(), [&](const TraceMove& move) {
-    return (length += move.length_mm()) > most_mm;
-  });
+  const auto behind = std::ranges::find_if(
+      moves, [&](const TraceMove& move) { return (length += move.length_mm()) > most_mm; });
   return static_cast<uint32_t>(behind - moves.begin());
+}
+
+// A digest of two points, to the micrometre.
+inline uint64_t DigestOfEnds(Point from, Point to) {
+  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
+  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
+}
+
+// A digest of the end of the path before and the start of the path after, to the micrometre.
+// REQUIRES: link > 0.
+inline uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
+  assert(link > 0);
+  return DigestOfEnds(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start);
 }
 
 }  // namespace traverse::gcode

@@ -75,7 +75,7 @@ class HiddenTravel {
 absl::Span<const TraceMove> TravelAlone(const TraceChunk& chunk, uint32_t link, uint32_t skipped) {
   if (chunk.links[link].new_layer || chunk.links[link].scripted) return {};
   const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
-  const bool alone = std::all_of(moves.begin(), moves.end(), [](const TraceMove& move) {
+  const bool alone = std::ranges::all_of(moves, [](const TraceMove& move) {
     const bool level = move.z_from_mm == move.z_to_mm;
     return move.kind == MoveKind::kTravel && move.open && !move.arc && level;
   });

@@ -181,7 +181,7 @@ double UsualFlow(const std::vector<LaidPath>& paths) {
     flows.emplace_back(path.filament_per_mm, path.filament_per_mm * LengthOf(path.pieces));
     left += flows.back().second;
   }
-  std::sort(flows.begin(), flows.end());
+  std::ranges::sort(flows);
   for (const auto& [flow, filament] : flows) {
     left -= 2 * filament;
     if (left <= 0) return flow;
@@ -197,7 +197,7 @@ std::vector<bool> LaidOver(const std::vector<LaidPath>& paths, const WorkLimit& 
   const auto asks = [most](const LaidPath& path) {
     return path.asked && path.filament_per_mm < most;
   };
-  if (std::none_of(paths.begin(), paths.end(), asks)) return over;
+  if (std::ranges::none_of(paths, asks)) return over;
   LaidLayer layer(paths);
   for (uint32_t path = 0; path < paths.size() && !limit.Ended(); ++path) {
     over[path] = asks(paths[path]) && layer.LiesOver(path);

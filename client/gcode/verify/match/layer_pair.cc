@@ -25,7 +25,7 @@ std::string_view Setting(std::string_view text, std::string_view name) {
   for (size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
     if (at < 2 || text[at - 1] != ' ' || text[at - 2] != ';') continue;
     std::string_view rest = text.substr(at + name.size(), 64);
-    if (!Begins(rest, " = ")) continue;
+    if (!rest.starts_with(" = ")) continue;
     rest.remove_prefix(3);
     return rest.substr(0, rest.find_first_of("\r\n"));
   }
@@ -67,7 +67,7 @@ uint32_t CoastingMoves(const TraceChunk& chunk, uint32_t path, const Piece& last
 }
 
 bool LiesOn(Point p, absl::Span<const Piece> pieces) {
-  return std::any_of(pieces.begin(), pieces.end(), [p](const Piece& piece) {
+  return std::ranges::any_of(pieces, [p](const Piece& piece) {
     return DistanceToPiece(p, piece.a, piece.b) <= kOnPathMm;
   });
 }
@@ -102,8 +102,8 @@ SlicerSettings ReadSettings(std::string_view text) {
   SlicerSettings settings;
   const std::string_view top = first_of("top_fill_pattern", "top_surface_pattern");
   const std::string_view bottom = first_of("bottom_fill_pattern", "bottom_surface_pattern");
-  settings.monotonic_top = top.empty() || Begins(top, "monotonic");
-  settings.monotonic_bottom = Begins(bottom, "monotonic");
+  settings.monotonic_top = top.empty() || top.starts_with("monotonic");
+  settings.monotonic_bottom = bottom.starts_with("monotonic");
   settings.leads_around_walls =
       first_of("avoid_crossing_perimeters", "reduce_crossing_wall") == "1";
   // Prints are at most so far apart, heads no higher, and filament no thicker.
@@ -274,11 +274,9 @@ void LayerPair::FindTails() {
 }
 
 uint32_t LayerPair::OriginalLine(uint32_t path) const {
-  const auto behind =
-      std::upper_bound(visits_.begin(), visits_.end(), path,
-                       [](uint32_t p, const Visit& visit) { return p < visit.first_path; });
+  const auto behind = std::ranges::upper_bound(visits_, path, {}, &Visit::first_path);
   assert(behind != visits_.begin());
-  return was_.LineOf(was_.paths[(behind - 1)->path]);
+  return was_.LineOf((behind - 1)->path);
 }
 
 uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
@@ -332,8 +330,8 @@ LayerPair::Travel LayerPair::TravelOf(const TraceChunk& chunk, uint32_t link, bo
 }
 
 bool LayerPair::CrossesWalls(const Travel& travel) const {
-  return std::any_of(travel.moves.begin(), travel.moves.end(),
-                     [this](const Piece& move) { return MeetsOuterWall(move.a, move.b); });
+  return std::ranges::any_of(travel.moves,
+                             [this](const Piece& move) { return MeetsOuterWall(move.a, move.b); });
 }
 
 double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {

@@ -128,6 +128,9 @@ class LayerPair {
     return is_.paths[visit.last_path].end_segment == visit.last_segment + 1;
   }
 
+  // The line of the other file with which the visit begins.
+  uint32_t LineOf(const Visit& visit) const { return is_.segments[visit.first_segment].line; }
+
   // The line of the original with which the path begins that path `path` of the other file is a
   // part of.
   uint32_t OriginalLine(uint32_t path) const;

@@ -16,8 +16,8 @@ bool UsesOneTool(const LayerPair& layer) {
   if (layer.end_path_was() - layer.first_path_was() < 2) return true;
   const absl::Span<const TraceMove> moves =
       layer.was().MovesOfLinks(layer.first_path_was() + 1, layer.end_path_was());
-  return std::all_of(moves.begin(), moves.end(),
-                     [&moves](const TraceMove& move) { return move.tool == moves.front().tool; });
+  return std::ranges::all_of(
+      moves, [&moves](const TraceMove& move) { return move.tool == moves.front().tool; });
 }
 
 }  // namespace

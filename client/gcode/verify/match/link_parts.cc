@@ -64,9 +64,8 @@ uint64_t KeyOf(const LinkPart& part) {
 
 template <typename Like>
 bool HasAny(const std::vector<LinkPart>& parts, const LinkPart& part, const Like& like) {
-  return std::any_of(parts.begin(), parts.end(), [&](const LinkPart& known) {
-    return std::equal(known.steps.begin(), known.steps.end(), part.steps.begin(), part.steps.end(),
-                      like);
+  return std::ranges::any_of(parts, [&](const LinkPart& known) {
+    return std::ranges::equal(known.steps, part.steps, like);
   });
 }
 
@@ -92,7 +91,7 @@ LinkCutter::LinkCutter(const TraceChunk& chunk, uint32_t link, uint32_t skipped,
 void LinkCutter::DropRisesToLayer(double top_mm) {
   const auto primes = [](const TraceMove* move) { return move->kind == MoveKind::kPriming; };
   const auto pulls = [](const TraceMove* move) { return Retracts(*move); };
-  const auto first_prime = std::find_if(moves_.begin(), moves_.end(), primes);
+  const auto first_prime = std::ranges::find_if(moves_, primes);
   const auto last_pull = std::find_if(moves_.rbegin(), moves_.rend(), pulls).base();
   const auto end = std::max(last_pull, first_prime);
   moves_.erase(std::remove_if(last_pull, end,
@@ -125,9 +124,8 @@ std::vector<std::vector<LinkPart>> LinkCutter::AllParts() const {
   }
   if (!cuts.empty()) return cuts;
   cuts.push_back(CutAt(moves_.size()));
-  const bool wipes = std::any_of(moves_.begin(), moves_.end(), [](const TraceMove* move) {
-    return move->kind == MoveKind::kWipe;
-  });
+  const bool wipes = std::ranges::any_of(
+      moves_, [](const TraceMove* move) { return move->kind == MoveKind::kWipe; });
   if ((level_ && !wipes) || moves_.size() > 2 * kMostCuts) return cuts;
   // Two paths that meet, one above the other, or where the wipe of the one ends.
   LinkCutter flat = *this;
@@ -190,7 +188,7 @@ void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& part
 
 void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
                          std::vector<LinkPart>& parts) const {
-  LinkPart part{role, {}, std::none_of(moves_.begin(), moves_.end(), IsSideways)};
+  LinkPart part{role, {}, std::ranges::none_of(moves_, IsSideways)};
   Micro pulled = 0;
   for (size_t i = 0; i < begin; ++i) pulled -= moves_[i]->filament;
   for (size_t i = begin; i < end; ++i) {
@@ -237,7 +235,7 @@ void KnownParts::Add(LinkPart part) {
   const auto rises = [](const PartStep& step) {
     return step.kind == MoveKind::kUp && step.behind_um <= kSlackUm;
   };
-  const auto stays = std::find_if_not(part.steps.begin(), part.steps.end(), rises);
+  const auto stays = std::ranges::find_if_not(part.steps, rises);
   if (stays != part.steps.begin() && stays != part.steps.end()) {
     LinkPart level = part;
     level.steps.assign(stays, part.steps.end());

@@ -160,8 +160,8 @@ class SectionGaps {
 
   bool Lacks(const MovedLoop& loop, int64_t least) const {
     const std::vector<uint64_t> digests = SegmentsOf(loop);
-    return std::all_of(digests.begin(), digests.end(),
-                       [&](uint64_t digest) { return surplus_.at(digest) <= -least; });
+    return std::ranges::all_of(digests,
+                               [&](uint64_t digest) { return surplus_.at(digest) <= -least; });
   }
 
   // Nothing if `other` has too many or too few segments from `first` on to be the loop.
@@ -269,7 +269,7 @@ void Remove(const std::vector<uint32_t>& removed, TraceChunk& chunk) {
     chunk.segments[segment - 1].end = chunk.segments[segment].end;
   }
   const auto now = [&removed](uint32_t segment) {
-    const auto before = std::lower_bound(removed.begin(), removed.end(), segment);
+    const auto before = std::ranges::lower_bound(removed, segment);
     return segment - static_cast<uint32_t>(before - removed.begin());
   };
   for (TracePath& path : chunk.paths) {
@@ -328,7 +328,7 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
       gap.as.push_back(closing.digest);
     }
   }
-  std::sort(found.removed.begin(), found.removed.end());
+  std::ranges::sort(found.removed);
 }
 
 }  // namespace

@@ -190,24 +190,21 @@ void OrderAsMoved(const std::vector<MovedLayer>& layers, TraceChunk& was) {
     for (size_t i = layer.first; i < layer.end; ++i) {
       place[layer.Of(i) - layer.first] = static_cast<uint32_t>(i);
     }
-    const auto index_of = [](const TraceSection& section, size_t i) { return section.index < i; };
     const auto begin =
-        std::lower_bound(was.sections.begin(), was.sections.end(), layer.first, index_of);
-    const auto end = std::lower_bound(begin, was.sections.end(), layer.end, index_of);
+        std::ranges::lower_bound(was.sections, layer.first, {}, &TraceSection::index);
+    const auto end =
+        std::ranges::lower_bound(begin, was.sections.end(), layer.end, {}, &TraceSection::index);
     for (auto section = begin; section != end; ++section) {
       section->index = place[section->index - layer.first];
     }
-    std::sort(begin, end,
-              [](const TraceSection& a, const TraceSection& b) { return a.index < b.index; });
+    std::ranges::sort(begin, end, {}, &TraceSection::index);
   }
 }
 
 void NumberAsOriginal(const std::vector<MovedLayer>& layers, TraceChunk& is) {
   const auto renumber = [&layers](auto& events) {
     for (auto& event : events) {
-      const auto behind = std::upper_bound(
-          layers.begin(), layers.end(), event.section,
-          [](uint32_t section, const MovedLayer& layer) { return section < layer.first; });
+      const auto behind = std::ranges::upper_bound(layers, event.section, {}, &MovedLayer::first);
       if (behind == layers.begin()) continue;
       const MovedLayer& layer = *(behind - 1);
       if (event.section < layer.end) event.section = layer.Of(event.section);

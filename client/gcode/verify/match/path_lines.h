@@ -16,8 +16,7 @@ class PathLines {
   // Layers in the order of the files.
   void Add(const LayerPair& layer) {
     for (const Visit& visit : layer.visits()) {
-      lines_.push_back({layer.was().LineOf(layer.was().paths[visit.path]),
-                        layer.is().segments[visit.first_segment].line});
+      lines_.push_back({layer.was().LineOf(visit.path), layer.LineOf(visit)});
     }
   }
 
@@ -29,9 +28,8 @@ class PathLines {
   // file, or else the last one of all. 0 if there are no paths.
   uint32_t OriginalOf(uint32_t optimised) const {
     if (lines_.empty()) return 0;
-    const auto next =
-        std::partition_point(lines_.begin(), lines_.end(),
-                             [optimised](const Pair& pair) { return pair.optimised < optimised; });
+    const auto next = std::ranges::partition_point(
+        lines_, [optimised](const Pair& pair) { return pair.optimised < optimised; });
     return next == lines_.end() ? lines_.back().original : next->original;
   }
 

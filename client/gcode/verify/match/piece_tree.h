@@ -32,7 +32,7 @@ class PieceTree {
         a, b, reach, [](uint32_t) { return true; },
         [&](uint32_t leaf) {
           const absl::Span<const uint32_t> indices = IndicesOf(leaf);
-          return std::all_of(indices.begin(), indices.end(), visit);
+          return std::ranges::all_of(indices, visit);
         });
   }
 

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 2> kFilamentNames = {"filamentdiameter", 
 
 template <size_t kSize>
 bool IsOneOf(const std::array<std::string_view, kSize>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 constexpr size_t kLongestName = 64;
@@ -112,8 +112,8 @@ StatedSettings ReadStatedSettings(std::string_view text) {
     const size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (!Begins(line, ";")) continue;
-    if (Begins(line, kCura)) {
+    if (!line.starts_with(";")) continue;
+    if (line.starts_with(kCura)) {
       cura += TrimLine(line.substr(kCura.size()));
     } else {
       notes.Take(line);

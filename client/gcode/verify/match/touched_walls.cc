@@ -35,17 +35,16 @@ class WallsAtEnd {
     if (here == here_.end() || mm + kNearerMm < std::min(here->second.end_mm, kFarMm)) return true;
     if (!followed_) Follow();
     const WallHere& found = here->second;
-    if (!found.left || found.left_on > move) return false;
+    if (found.left_on > move) return false;
     if (found.left_on < move) return true;
     return DistanceOfPieces(moves_[move].a, found.left_at, wall.a, wall.b) >= kAwayMm;
   }
 
  private:
   struct WallHere {
-    double end_mm = kAwayMm;  // from the end
-    size_t beside_until = 0;  // the last point that is near it
-    bool left = false;
-    size_t left_on = 0;  // the move
+    double end_mm = kAwayMm;    // from the end
+    size_t beside_until = 0;    // the last point that is near it
+    size_t left_on = SIZE_MAX;  // the move; SIZE_MAX: not left
     Point left_at;
   };
 
@@ -82,7 +81,6 @@ class WallsAtEnd {
         });
         std::erase_if(beside, [&](WallHere* wall) {
           if (wall->beside_until == points) return false;
-          wall->left = true;
           wall->left_on = move;
           wall->left_at = at;
           return true;
@@ -98,7 +96,7 @@ class WallsAtEnd {
 };
 
 std::vector<Piece> Backwards(std::vector<Piece> moves) {
-  std::reverse(moves.begin(), moves.end());
+  std::ranges::reverse(moves);
   for (Piece& move : moves) std::swap(move.a, move.b);
   return moves;
 }

@@ -12,7 +12,6 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -66,9 +65,8 @@ absl::flat_hash_set<uint64_t> DeparturesOf(const TraceChunk& was, uint32_t first
 // Of the layer and, as travel to it leaves a path of another one, of the layer before.
 std::optional<absl::flat_hash_set<uint64_t>> DeparturesTo(const LayerPair& layer) {
   const std::vector<TraceLayer>& layers = layer.was().layers;
-  const auto own = std::find_if(layers.begin(), layers.end(), [&layer](const TraceLayer& other) {
-    return other.index == layer.index();
-  });
+  const auto own = std::ranges::find_if(
+      layers, [&layer](const TraceLayer& other) { return other.index == layer.index(); });
   // What is before a chunk is not there any more.
   if (own == layers.begin() && layer.index() > 0) return std::nullopt;
   const TraceLayer& first = own == layers.begin() ? *own : *(own - 1);

@@ -28,9 +28,7 @@ absl::flat_hash_set<uint64_t> Places(const LayerPair& layer) {
 
 // The visit that has segment `segment` of the other file.
 const Visit* VisitOf(const LayerPair& layer, uint32_t segment) {
-  const auto behind =
-      std::upper_bound(layer.visits().begin(), layer.visits().end(), segment,
-                       [](uint32_t s, const Visit& visit) { return s < visit.first_segment; });
+  const auto behind = std::ranges::upper_bound(layer.visits(), segment, {}, &Visit::first_segment);
   if (behind == layer.visits().begin()) return nullptr;
   const Visit& visit = *(behind - 1);
   return segment <= visit.last_segment ? &visit : nullptr;
@@ -43,8 +41,7 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const uint32_t first = is.paths[layer.first_path_is()].first_segment;
   const uint32_t end = is.paths[layer.end_path_is() - 1].end_segment;
-  absl::flat_hash_set<uint64_t> places;
-  bool learnt = false;
+  const absl::flat_hash_set<uint64_t> places = Places(layer);
   for (const TraceCommand& command : is.commands) {
     if (command.segment < first || command.segment >= end) continue;
     const Visit* visit = VisitOf(layer, command.segment);
@@ -56,8 +53,6 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
     const uint32_t behind =
         visit->forward ? (visit->entry + steps) % n : (visit->entry + n - steps + 1) % n;
     if (behind == 0) continue;
-    if (!learnt) places = Places(layer);
-    learnt = true;
     const uint32_t segment = path.first_segment + behind;
     if (places.contains(Mix(command.name, segment))) continue;
     findings.breaks.push_back(

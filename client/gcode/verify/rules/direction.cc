@@ -22,9 +22,9 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
                           (of_surface || (!layer.Outer(visit.path) && !path.overhangs));
     if (layer.Closed(visit.path) && may_turn) continue;
     findings.breaks.push_back({VerifyRule::kDirection, layer.was().LineOf(path),
-                               layer.is().segments[visit.first_segment].line,
+                               layer.LineOf(visit),
                                absl::StrFormat("this %s is printed in the opposite direction",
-                                               std::string(PathClassName(path_class)))});
+                                               PathClassName(path_class))});
   }
 }
 

@@ -10,7 +10,6 @@
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -46,10 +45,10 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
   if (!same_end) {
     if (turned.contains(visit.last_path + 1)) return false;
     const auto along = layer.Side(false).MovesAlong(visit.last_path + 1);
-    return std::none_of(along.begin(), along.end(), IsSideways);
+    return std::ranges::none_of(along, IsSideways);
   }
   const absl::Span<const TraceMove> had = layer.was().MovesOf(visit.path + 1);
-  const auto first = std::find_if(had.begin(), had.end(), IsSideways);
+  const auto first = std::ranges::find_if(had, IsSideways);
   return first == had.end() || Distance(departs->to, first->to) > kSamePointMm;
 }
 

@@ -109,7 +109,7 @@ void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
 bool Obstacles::AnyAbove(const TraceChunk& chunk, uint32_t first_link, uint32_t end_link) const {
   const double least_mm = tip_.highest_mm() - kLevelMm;
   const absl::Span<const TraceMove> moves = chunk.MovesOfLinks(first_link, end_link);
-  return std::any_of(moves.begin(), moves.end(), [least_mm](const TraceMove& m) {
+  return std::ranges::any_of(moves, [least_mm](const TraceMove& m) {
     return std::min(m.z_from_mm, m.z_to_mm) < least_mm;
   });
 }

@@ -250,16 +250,14 @@ class OrderKeeper {
   void Report(uint32_t earlier, uint32_t later, absl::Span<const Visit> visits,
               LayerFindings& findings) {
     const TraceChunk& was = layer_.was();
-    const TraceChunk& is = layer_.is();
     const Visit& visit = visits[PlaceOf(later)];
-    findings.breaks.push_back({VerifyRule::kOrder, was.LineOf(was.paths[later]),
-                               is.segments[visit.first_segment].line,
-                               absl::StrFormat("this %s is printed before the %s of line %d of the "
-                                               "original, but there it comes after it",
-                                               std::string(PathClassName(layer_.ClassOf(later))),
-                                               std::string(PathClassName(layer_.ClassOf(earlier))),
-                                               was.LineOf(was.paths[earlier])),
-                               is.segments[visits[PlaceOf(earlier)].first_segment].line});
+    findings.breaks.push_back(
+        {VerifyRule::kOrder, was.LineOf(later), layer_.LineOf(visit),
+         absl::StrFormat("this %s is printed before the %s of line %d of the "
+                         "original, but there it comes after it",
+                         PathClassName(layer_.ClassOf(later)),
+                         PathClassName(layer_.ClassOf(earlier)), was.LineOf(earlier)),
+         layer_.LineOf(visits[PlaceOf(earlier)])});
   }
 
   const LayerPair& layer_;
@@ -296,11 +294,11 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
               DistanceOfPieces(piece.a, piece.b, other.a, other.b) <= kNearMm;
       if (!found) return true;
       findings.breaks.push_back(
-          {VerifyRule::kOrder, layer.was().LineOf(layer.was().paths[piece.path]),
-           layer.is().LineOf(layer.is().paths[layer.SectionIs(section(piece)).first_path]),
+          {VerifyRule::kOrder, layer.was().LineOf(piece.path),
+           layer.is().LineOf(layer.SectionIs(section(piece)).first_path),
            absl::StrFormat("this object is printed before one that it touches, which comes before "
                            "it in the original, with line %d",
-                           layer.was().LineOf(layer.was().paths[other.path]))});
+                           layer.was().LineOf(other.path))});
       return false;
     });
     if (found) return;

@@ -57,7 +57,7 @@ bool GoesBeyond(const TraceChunk& chunk, uint32_t path, const Tail& tail) {
 bool LeadsOn(const TraceChunk& chunk, uint32_t path) {
   if (path + 1 >= chunk.paths.size()) return false;
   const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
-  return std::all_of(moves.begin(), moves.end(), [&](const TraceMove& move) {
+  return std::ranges::all_of(moves, [&](const TraceMove& move) {
     return move.kind == MoveKind::kTravel && move.open && move.feed <= chunk.paths[path].feed;
   });
 }

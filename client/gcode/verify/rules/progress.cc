@@ -27,9 +27,7 @@ struct Span {
 };
 
 Span SectionOf(const ProgressLog& log, uint32_t of) {
-  const auto behind = std::upper_bound(
-      log.begins.begin(), log.begins.end(), of,
-      [](uint32_t section, const SectionBegin& begin) { return section < begin.section; });
+  const auto behind = std::ranges::upper_bound(log.begins, of, {}, &SectionBegin::section);
   Span span{0, log.seconds};
   if (behind != log.begins.begin()) span.begin = std::prev(behind)->seconds;
   if (behind != log.begins.end()) span.end = behind->seconds;
@@ -54,7 +52,7 @@ struct Displacement {
 // How far the nearest one of `places`, ascending, is from `wanted`, if that lies between them;
 // else 0: there may be a nearer one.
 double ToPlace(double wanted, const std::array<double, 4>& places) {
-  const auto behind = std::lower_bound(places.begin(), places.end(), wanted);
+  const auto behind = std::ranges::lower_bound(places, wanted);
   if (behind == places.begin() || behind == places.end()) return 0;
   return std::min(wanted - *std::prev(behind), *behind - wanted);
 }

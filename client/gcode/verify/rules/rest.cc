@@ -105,7 +105,7 @@ class IslandFinder {
     if (whole_[node]) return true;
     if (tree_.IsLeaf(node)) {
       const absl::Span<const uint32_t> indices = tree_.IndicesOf(node);
-      whole_[node] = std::all_of(indices.begin(), indices.end(), [&](uint32_t i) {
+      whole_[node] = std::ranges::all_of(indices, [&](uint32_t i) {
         const auto region = static_cast<int>(tree_.pieces()[i].path - first_);
         return regions_.AreJoined(region, RegionOf(node));
       });

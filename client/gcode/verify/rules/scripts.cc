@@ -14,7 +14,7 @@ bool ChangesHeight(const TraceMove& move) { return move.z_to_mm != move.z_from_m
 // belongs to the path, and may be that of another one.
 absl::Span<const TraceMove> Leaving(const TraceChunk& chunk) {
   const absl::Span<const TraceMove> moves = chunk.MovesOfLast();
-  const auto first = std::find_if(moves.begin(), moves.end(), ChangesHeight);
+  const auto first = std::ranges::find_if(moves, ChangesHeight);
   return moves.subspan(static_cast<size_t>(first - moves.begin()));
 }
 
@@ -40,8 +40,7 @@ bool AreEqual(const TraceMove& one, const TraceMove& other) {
 void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
   const absl::Span<const TraceMove> moves = Leaving(was);
   const absl::Span<const TraceMove> others = Leaving(is);
-  const auto [a, b] =
-      std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), DoTheSame);
+  const auto [a, b] = std::ranges::mismatch(moves, others, DoTheSame);
   if (a == moves.end() && b == others.end()) return;
   breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                     b == others.end() ? 0 : b->line,
@@ -55,8 +54,7 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
         FixedMoves(layer.was(), layer.SectionWas(i).first_path);
     const absl::Span<const TraceMove> others =
         FixedMoves(layer.is(), layer.SectionIs(i).first_path);
-    const auto [a, b] =
-        std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), AreEqual);
+    const auto [a, b] = std::ranges::mismatch(moves, others, AreEqual);
     if (a == moves.end() && b == others.end()) continue;
     findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                                b == others.end() ? 0 : b->line,

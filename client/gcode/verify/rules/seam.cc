@@ -42,10 +42,9 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
     if (begin == 0 || (balanced && Distance(seam, path.start) <= kOnPathMm)) continue;
     if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
     findings.breaks.push_back(
-        {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,
+        {VerifyRule::kSeam, was.LineOf(path), layer.LineOf(visit),
          absl::StrFormat("the seam of this %s is %.2f mm from where it was%s",
-                         std::string(PathClassName(layer.ClassOf(visit.path))),
-                         Distance(seam, path.start),
+                         PathClassName(layer.ClassOf(visit.path)), Distance(seam, path.start),
                          balanced ? ", and not at a sharp corner" : "")});
   }
 }

@@ -34,17 +34,6 @@ void Note(const LayerPair& layer, const TraceMove& move, Observations& observed)
   }
 }
 
-void ObserveWas(const LayerPair& layer, Observations& seen) {
-  const TraceChunk& chunk = layer.was();
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    if (layer.Ended()) return;
-    if (chunk.links[link].scripted) continue;
-    for (const TraceMove& move : chunk.MovesOf(link, layer.Side(true).TailOf(link))) {
-      if (move.in_print) Note(layer, move, seen);
-    }
-  }
-}
-
 using LongestTravels = absl::flat_hash_map<uint64_t, float>;  // by acceleration, mm
 
 LongestTravels LongestOf(const LayerPair& layer) {
@@ -81,7 +70,7 @@ bool IsTooLong(const TraceMove& move, const LongestTravels& longest) {
   const auto own = longest.find(move.acceleration);
   const float most = own == longest.end() ? 0 : own->second;
   if (!IsMuchLonger(length, most)) return false;
-  return std::any_of(longest.begin(), longest.end(), [&](const auto& other) {
+  return std::ranges::any_of(longest, [&](const auto& other) {
     return other.first != move.acceleration && other.second >= length;
   });
 }
@@ -89,35 +78,27 @@ bool IsTooLong(const TraceMove& move, const LongestTravels& longest) {
 // Moves of `link` that the original does not have in this layer. The gap of a loop that begins
 // elsewhere belongs to the loop, and is crossed as fast as that is printed.
 bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
-  if (!move.in_print || layer.IsKnown(move)) return false;
+  if (move.firmware || layer.IsKnown(move)) return false;
   const TraceChunk& is = layer.is();
   return move.kind != MoveKind::kTravel || !move.open || link == 0 ||
          move.length_mm() > LoopGapMm(is, link - 1) || move.feed != is.paths[link - 1].feed;
 }
 
-void ObserveIs(const LayerPair& layer, Observations& seen) {
-  const TraceChunk& chunk = layer.is();
-  const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
-  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    if (layer.Ended()) return;
-    // At unknown lines every step is that of the original there: see CheckScriptedTravels.
-    if (chunk.links[link].scripted) continue;
-    for (const TraceMove& move : chunk.MovesOf(link, layer.Side(false).TailOf(link))) {
-      if (!IsNew(layer, link, move) || move.firmware) continue;
-      Note(layer, move, seen);
-      if (IsTooLong(move, longest)) {
-        seen.long_travels.push_back(
-            {move.acceleration, static_cast<float>(move.length_mm()), {move.line, layer.index()}});
-      }
-    }
-  }
-}
-
 }  // namespace
 
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
-  ObserveWas(layer, findings.was);
-  ObserveIs(layer, findings.is);
+  const LongestTravels longest = AcceleratesByPath(layer) ? LongestTravels() : LongestOf(layer);
+  layer.ForEachLink([&](const LayerSide& side, uint32_t link) {
+    // At unknown lines every step is that of the original there: see CheckScriptedTravels.
+    if (side.chunk.links[link].scripted) return;
+    for (const TraceMove& move : side.chunk.MovesOf(link, side.TailOf(link))) {
+      if (!move.in_print || (!side.original && !IsNew(layer, link, move))) continue;
+      Note(layer, move, findings.Of(side));
+      if (side.original || !IsTooLong(move, longest)) continue;
+      findings.is.long_travels.push_back(
+          {move.acceleration, static_cast<float>(move.length_mm()), {move.line, layer.index()}});
+    }
+  });
 }
 
 // After the last path there are also moves of the end script, which are no example for the print.

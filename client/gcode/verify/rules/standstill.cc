@@ -17,10 +17,10 @@ namespace {
 // How many layers of `chunk` end before that section; what has no paths belongs to the layer
 // behind.
 uint32_t LayerOf(const TraceChunk& chunk, uint32_t section) {
-  const auto at = std::lower_bound(chunk.layers.begin(), chunk.layers.end(), section,
-                                   [&chunk](const TraceLayer& layer, uint32_t of) {
-                                     return chunk.sections[layer.end_section - 1].index < of;
-                                   });
+  const auto end_of = [&chunk](const TraceLayer& layer) {
+    return chunk.sections[layer.end_section - 1].index;
+  };
+  const auto at = std::ranges::lower_bound(chunk.layers, section, {}, end_of);
   return static_cast<uint32_t>(at - chunk.layers.begin());
 }
 

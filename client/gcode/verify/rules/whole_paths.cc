@@ -18,8 +18,8 @@ void CheckJoint(const LayerPair& layer, size_t section, LayerFindings& findings)
   const bool joined = layer.is().paths[begins].joined && !visits.empty() &&
                       visits[0].path == path && visits[0].entry == 0 && visits[0].forward;
   if (joined) return;
-  findings.breaks.push_back({VerifyRule::kWholePaths, layer.was().LineOf(layer.was().paths[path]),
-                             layer.is().LineOf(layer.is().paths[begins]),
+  findings.breaks.push_back({VerifyRule::kWholePaths, layer.was().LineOf(path),
+                             layer.is().LineOf(begins),
                              "does not continue from the segment before it"});
 }
 
@@ -37,7 +37,7 @@ void CheckWholePaths(const LayerPair& layer, LayerFindings& findings) {
     if (begun.insert(visit.path).second) continue;
     findings.breaks.push_back(
         {VerifyRule::kWholePaths, was.segments[path.first_segment + visit.entry].line,
-         layer.is().segments[visit.first_segment].line,
+         layer.LineOf(visit),
          absl::StrFormat(
              "begins with %d of the %d segments of a path that is printed without interruption",
              visit.segments, path.size())});

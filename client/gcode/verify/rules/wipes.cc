@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -150,8 +151,8 @@ struct Pulls {
 
   // Some are cut short, and pull as much: that tells nothing of longer ones.
   const Wipe& FastestOfLength(float length_mm) const {
-    const auto behind = std::partition_point(
-        longest.begin(), longest.end(), [length_mm](float l) { return l >= kAsLong * length_mm; });
+    const auto behind = std::ranges::partition_point(
+        longest, [length_mm](float l) { return l >= kAsLong * length_mm; });
     const auto as_long = static_cast<size_t>(behind - longest.begin());
     return *fastest[(as_long == 0 ? fastest.size() : as_long) - 1];
   }
@@ -173,8 +174,7 @@ Pulls PullsOf(const std::vector<Wipe>& wipes) {
     pulls.most_mm = std::max(pulls.most_mm, wipe.pulled_mm);
     pulls.turns_back |= wipe.turns_back;
   }
-  std::sort(pulls.fastest.begin(), pulls.fastest.end(),
-            [](const Wipe* a, const Wipe* b) { return a->length_mm > b->length_mm; });
+  std::ranges::sort(pulls.fastest, std::greater(), &Wipe::length_mm);
   for (size_t i = 0; i < pulls.fastest.size(); ++i) {
     pulls.longest.push_back(pulls.fastest[i]->length_mm);
     if (i > 0 && pulls.fastest[i - 1]->pull() >= pulls.fastest[i]->pull())
@@ -185,7 +185,7 @@ Pulls PullsOf(const std::vector<Wipe>& wipes) {
 
 bool PullsBack(const TraceChunk& chunk, uint32_t link) {
   const absl::Span<const TraceMove> moves = chunk.MovesOf(link);
-  return std::any_of(moves.begin(), moves.end(), Retracts);
+  return std::ranges::any_of(moves, Retracts);
 }
 
 // Whether a wipe that the original has may be missing in `link` of the other file. Where the
@@ -238,7 +238,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
     }
     if (wipe.at.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
-    wipe.path_line = was.LineOf(was.paths[visit.path]);
+    wipe.path_line = was.LineOf(visit.path);
     findings.is.wipes.push_back(wipe);
   }
 }

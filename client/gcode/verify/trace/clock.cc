@@ -36,14 +36,14 @@ double FlatLength(const Motion& motion) {
   return way.angle() * way.radius();
 }
 
-void Clock::Take(const VerifyLine& line, const VerifyMachine& machine) {
+double SecondsOf(const VerifyLine& line, const VerifyMachine& machine) {
   // Some dwells belong to the moves around them.
   if (line.command == Mix('G', 4) || (line.moves && machine.motion().number == 4)) {
-    seconds_ += DwellSeconds(line.text);
-  } else if (line.role == LineRole::kDeposit || line.moves) {
-    const Motion& motion = machine.motion();
-    if (motion.feed > 0) seconds_ += PathLengthOf(motion) / static_cast<double>(motion.feed) * 60;
+    return DwellSeconds(line.text);
   }
+  if (line.role != LineRole::kDeposit && !line.moves) return 0;
+  const Motion& motion = machine.motion();
+  return motion.feed > 0 ? PathLengthOf(motion) / static_cast<double>(motion.feed) * 60 : 0;
 }
 
 }  // namespace traverse::gcode

@@ -10,16 +10,8 @@ namespace traverse::gcode {
 // How far `motion` goes in the plane, along its arc, in its own units.
 double FlatLength(const Motion& motion);
 
-class Clock {
- public:
-  // A line that `machine` has just done. Retractions by the firmware take no time.
-  void Take(const VerifyLine& line, const VerifyMachine& machine);
-
-  double seconds() const { return seconds_; }
-
- private:
-  double seconds_ = 0;
-};
+// That of a line that `machine` has just done. Retractions by the firmware take no time.
+double SecondsOf(const VerifyLine& line, const VerifyMachine& machine);
 
 }  // namespace traverse::gcode
 

@@ -106,8 +106,8 @@ std::string Plain(std::string_view name) {
 
 PathClass Find(std::string_view name) {
   const std::string plain = Plain(name);
-  const auto* found = std::find_if(std::begin(kNames), std::end(kNames),
-                                   [&plain](const Name& known) { return known.name == plain; });
+  const auto* found =
+      std::ranges::find_if(kNames, [&plain](const Name& known) { return known.name == plain; });
   return found == std::end(kNames) ? PathClass::kUnnamed : found->path_class;
 }
 
@@ -126,12 +126,12 @@ std::string_view PathClassName(PathClass path_class) {
 std::optional<PathClass> ClassOfComment(std::string_view comment) {
   comment.remove_prefix(std::min(comment.find_first_not_of("; \t"), comment.size()));
   for (const std::string_view mark : {"TYPE:", "FEATURE:", "feature "}) {
-    if (Begins(comment, mark)) return Find(comment.substr(mark.size()));
+    if (comment.starts_with(mark)) return Find(comment.substr(mark.size()));
   }
-  if (Begins(comment, "'")) {
+  if (comment.starts_with("'")) {
     const std::string_view name = comment.substr(1, comment.find('\'', 1) - 1);
     // Travel stands between paths, and says nothing of them.
-    if (Begins(name, "Travel") || Begins(name, "Destring") || Begins(name, "Wipe")) {
+    if (name.starts_with("Travel") || name.starts_with("Destring") || name.starts_with("Wipe")) {
       return std::nullopt;
     }
     return Find(name);

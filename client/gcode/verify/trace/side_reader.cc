@@ -19,8 +19,8 @@ constexpr size_t kLinesToLimit = 256;
 constexpr size_t kHead = 1 << 20;
 
 bool IsLayerMark(std::string_view text) {
-  return std::any_of(std::begin(kLayerMarks), std::end(kLayerMarks),
-                     [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; });
+  return std::ranges::any_of(
+      kLayerMarks, [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "client/gcode/verify/machine/told_progress.h"
 #include "client/gcode/verify/text.h"
+#include "client/gcode/verify/trace/clock.h"
 
 namespace traverse::gcode {
 namespace {
@@ -54,8 +55,8 @@ uint64_t SpiralOf(const Motion& motion, double unit) {
 // Moves what lies in section `end` and behind it from `from` to `to`.
 template <typename Event>
 void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
-  const auto later = std::find_if(from.begin(), from.end(),
-                                  [end](const Event& event) { return event.section >= end; });
+  const auto later =
+      std::ranges::find_if(from, [end](const Event& event) { return event.section >= end; });
   to.assign(later, from.end());
   from.erase(later, from.end());
 }
@@ -110,9 +111,9 @@ bool TraceMove::IsNothing(double least_mm) const {
 
 void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   if (line.text.empty()) return;
-  const double before_seconds = clock_.seconds();
+  const double before_seconds = seconds_;
   if (section != last_section_) BeginSection(line, section, before_seconds);
-  clock_.Take(line, machine);
+  seconds_ += SecondsOf(line, machine);
   if (line.role == LineRole::kDeposit) NotePlaces(before_seconds);
   if (line.text[0] == ';') {
     TakeComment(line, section);
@@ -120,7 +121,7 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     TakeDeposit(line, machine, section);
     TracePath& path = chunk_.paths.back();
     if (path.size() == 1) path.begun_seconds = before_seconds;
-    path.left_seconds = clock_.seconds();
+    path.left_seconds = seconds_;
   } else if (line.moves) {
     TakeMove(line, machine, section);
   }
@@ -129,10 +130,10 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   if (line.role == LineRole::kDeposit || line.role == LineRole::kFence ||
       line.role == LineRole::kFixed) {
     last_held_line_ = number;
-    held_seconds_ = clock_.seconds();
+    held_seconds_ = seconds_;
   }
   if (line.role == LineRole::kProgress) {
-    const double now = clock_.seconds();
+    const double now = seconds_;
     chunk_.progress.push_back({line.digest,
                                number,
                                section,
@@ -157,11 +158,11 @@ void Tracer::NotePlaces(double before_seconds) {
   for (size_t i = chunk_.progress.size(); i > 0 && without_next_ > 0; --without_next_) {
     std::array<double, 4>& places = chunk_.progress[--i].places;
     places[2] = before_seconds;
-    places[3] = clock_.seconds();
+    places[3] = seconds_;
   }
   without_next_ = 0;
   begun_seconds_ = before_seconds;
-  left_seconds_ = clock_.seconds();
+  left_seconds_ = seconds_;
 }
 
 // A change of height begins a section before its first deposit, but what stands behind the last
@@ -192,10 +193,8 @@ void Tracer::TakeComment(const VerifyLine& line, uint32_t section) {
   if (line.role == LineRole::kFence) return;
   const std::string_view text = line.text;
   const auto number = static_cast<uint32_t>(line.number);
-  if (text == ";WIPE_START" || text == "; WIPE_START") {
-    TakeWipeMark(true, number, section);
-  } else if (text == ";WIPE_END" || text == "; WIPE_END") {
-    TakeWipeMark(false, number, section);
+  if (const std::optional<bool> begins = BeginsWipe(text)) {
+    TakeWipeMark(*begins, number, section);
   } else if (const std::optional<PathClass> path_class = ClassOfComment(text)) {
     named_ = path_class;
   }
@@ -211,8 +210,7 @@ PathClass Tracer::ClassNow(const VerifyLine& line) const {
 
 // True if all that happened since the last deposit were segments rounded to nothing.
 bool Tracer::OnlyRounding() const {
-  return std::all_of(pending_.begin(), pending_.end(),
-                     [](const TraceMove& move) { return move.rounding; });
+  return std::ranges::all_of(pending_, [](const TraceMove& move) { return move.rounding; });
 }
 
 // Far beyond all that was deposited and where the next path begins, as no slicer's own travel
@@ -289,9 +287,9 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     link_ = TraceLink{};
   } else {
     BeginPath(motion, section, unit);
-    chunk_.paths.back().fan = machine.fan();
+    chunk_.paths.back().fan = machine.settings().fan();
     chunk_.paths.back().states_fan = states_fan_;
-    chunk_.paths.back().acceleration = machine.PathAccelerationDigest();
+    chunk_.paths.back().acceleration = machine.settings().PathAccelerationDigest();
   }
   in_path_ = true;
   states_fan_ = false;
@@ -314,7 +312,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     chunk_.arcs.push_back(ArcOf(motion, unit));
   }
   chunk_.segments.push_back(segment);
-  const uint64_t acceleration = machine.AccelerationDigest();
+  const uint64_t acceleration = machine.settings().AccelerationDigest();
   if (chunk_.accelerations.empty() || chunk_.accelerations.back() != acceleration) {
     chunk_.accelerations.push_back(acceleration);
   }
@@ -345,7 +343,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
     chunk_.line_faults.push_back(
         {section, static_cast<uint32_t>(line.number), LineFaultKind::kUnmarked});
   }
-  move.acceleration = machine.AccelerationDigest();
+  move.acceleration = machine.settings().AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
   move.tool = machine.tool();
   move.from = PointOf(motion.from, unit);
@@ -397,14 +395,13 @@ void Tracer::Mark() {
 TraceChunk Tracer::TakeChunk(uint32_t end_section, bool last_of_file) {
   EndLink();
   chunk_.end_section = end_section;
-  chunk_.seconds = clock_.seconds();
+  chunk_.seconds = seconds_;
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});
   MoveLater(end_section, taken.standstills, chunk_.standstills);
   MoveLater(end_section, taken.line_faults, chunk_.line_faults);
   if (last_of_file) return taken;
-  const auto loose =
-      std::find_if(taken.progress.begin(), taken.progress.end(),
-                   [this](const Progress& line) { return line.line > last_held_line_; });
+  const auto loose = std::ranges::find_if(
+      taken.progress, [this](const Progress& line) { return line.line > last_held_line_; });
   chunk_.progress.assign(loose, taken.progress.end());
   taken.progress.erase(loose, taken.progress.end());
   return taken;

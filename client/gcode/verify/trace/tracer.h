@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "client/gcode/verify/trace/clock.h"
 #include "client/gcode/verify/trace/trace.h"
 #include "engine/geometry/bounding_box.h"
 
@@ -51,7 +50,7 @@ class Tracer {
   PathClass ClassNow(const VerifyLine& line) const;
 
   TraceChunk chunk_;
-  Clock clock_;
+  double seconds_ = 0;  // since the file began: clock.h
   std::vector<TraceMove> pending_;
   std::vector<TraceCommand> pending_commands_;
   TraceLink link_;

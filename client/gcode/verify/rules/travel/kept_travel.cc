@@ -9,8 +9,8 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
@@ -116,14 +116,12 @@ void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings) {
     if (found == links.end() || LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
     const std::vector<TraceMove> has = MovesOf(is, link);
     const std::vector<TraceMove> had = MovesOf(was, found->second);
-    const auto [one, other] =
-        std::mismatch(had.begin(), had.end(), has.begin(), has.end(), SameMove);
+    const auto [one, other] = std::ranges::mismatch(had, has, SameMove);
     if (one == had.end() && other == has.end()) continue;
     const bool more = other != has.end();
     findings.breaks.push_back(
-        {VerifyRule::kKeptTravels,
-         one == had.end() ? was.LineOf(was.paths[found->second]) : one->line,
-         more ? other->line : is.LineOf(is.paths[link]),
+        {VerifyRule::kKeptTravels, one == had.end() ? was.LineOf(found->second) : one->line,
+         more ? other->line : is.LineOf(link),
          absl::StrFormat("a %s between two paths that follow each other in the original too, "
                          "which has another %s there",
                          NameOf(has, other), NameOf(had, one))});

@@ -7,8 +7,8 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
-#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -49,7 +49,7 @@ float LowLength(absl::Span<const TravelProfile::Piece> pieces, float lift) {
 }
 
 bool EndsLow(const TravelProfile& travel, float lift) {
-  return std::any_of(travel.pieces.begin(), travel.pieces.end(), [lift](const auto& piece) {
+  return std::ranges::any_of(travel.pieces, [lift](const auto& piece) {
     return piece.to_mm < lift - kHeightSlackMm && piece.length_mm > kLeastTravelMm;
   });
 }
@@ -110,92 +110,77 @@ bool Knows(const absl::flat_hash_set<int64_t>& known, int64_t value, int64_t sla
   return false;
 }
 
-// The travel of one link, up to where the nozzle is opened and from there on, as where the head
-// comes down on its way to the next object.
-class LinkProfiles {
- public:
-  LinkProfiles(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen)
-      : layer_(layer), side_(side), link_(link), to_mm_(side.chunk.paths[link].z_mm), seen_(seen) {}
-
-  void Append() {
-    const absl::Span<const TraceMove> moves = side_.chunk.MovesOf(link_);
-    if (moves.empty()) return;
-    const double z_before = moves.front().z_from_mm;
-    level_ = std::abs(z_before - to_mm_) <= kOneHeightMm;
-    for (const TraceMove& move : moves) {
-      retracted_ |= move.kind == MoveKind::kTravel && move.in_print && !move.open;
-    }
-    Begin(z_before);
-    for (const TraceMove& move : moves) {
-      if (move.kind == MoveKind::kPriming) {
-        End();
-        Begin(move.z_to_mm);
-      } else if (move.kind == MoveKind::kTravel && move.in_print && move.open != retracted_) {
-        Take(move);
-      }
-    }
-    End();
-  }
-
- private:
-  void Begin(double z_mm) {
-    base_mm_ = std::max(to_mm_, z_mm);
-    travel_ = {.at = {0, layer_.index()}};
-    if (link_ > 0) travel_.ends = EndsOf(side_.chunk, link_);
-    length_mm_ = 0;
-    counts_ = false;
-  }
-
-  void Take(const TraceMove& move) {
-    const bool counts = layer_.Counts(side_, move);
-    if (travel_.at.line == 0) travel_.at.line = move.line;
-    length_mm_ += move.length_mm();
-    counts_ |= counts;
-    travel_.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm_),
-                              static_cast<float>(move.z_to_mm - base_mm_),
-                              static_cast<float>(move.length_mm())});
-    if (!move.states_z || !counts) return;
-    const int64_t um = std::llround((move.z_to_mm - to_mm_) * 1000);
-    const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
-    if (!side_.original) {
-      seen_.stated.push_back({um, slope, level_, {move.line, layer_.index()}});
-      return;
-    }
-    StatedHeights& heights = level_ ? seen_.level_heights : seen_.other_heights;
-    if (heights.um.empty()) heights.first_line = move.line;
-    heights.um.insert(um);
-    if (slope > 0) seen_.slopes.insert(slope);
-  }
-
-  void End() {
-    if (length_mm_ < kLeastMoveMm || !counts_) return;
-    const bool between = side_.chunk.links[link_].new_layer || !level_;
-    const bool crossing = layer_.CrossingLength(side_.chunk, link_, !retracted_) > 0;
-    seen_.travels[(retracted_ ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
-        std::move(travel_));
-  }
-
-  const LayerPair& layer_;
-  const LayerSide& side_;
-  const uint32_t link_;
-  const double to_mm_;  // the height of the path
-  Observations& seen_;
-  bool level_ = false;
-  bool retracted_ = false;
-  TravelProfile travel_;
-  double base_mm_ = 0;
-  double length_mm_ = 0;
-  bool counts_ = false;  // some of it does: LayerPair::Counts
+// Travel of one link.
+struct LinkTravel {
+  const LayerPair& layer;
+  const LayerSide& side;
+  uint32_t link = 0;
+  double to_mm = 0;  // the height of the path behind it
+  bool level = false;
+  bool retracted = false;
 };
 
-// Appends the profiles of the travel in `link`, and the heights that it states.
+// Notes the height that `move` states, and the slope on which it reaches it.
+void NoteHeight(const LinkTravel& of, const TraceMove& move, Observations& seen) {
+  const int64_t um = std::llround((move.z_to_mm - of.to_mm) * 1000);
+  const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
+  if (!of.side.original) {
+    seen.stated.push_back({um, slope, of.level, {move.line, of.layer.index()}});
+    return;
+  }
+  StatedHeights& heights = of.level ? seen.level_heights : seen.other_heights;
+  if (heights.um.empty()) heights.first_line = move.line;
+  heights.um.insert(um);
+  if (slope > 0) seen.slopes.insert(slope);
+}
+
+// Appends the profile of the travel among `moves`, which begin at `z_mm`.
+void ObserveStretch(const LinkTravel& of, absl::Span<const TraceMove> moves, double z_mm,
+                    Observations& seen) {
+  const double base_mm = std::max(of.to_mm, z_mm);
+  TravelProfile travel{.at = {0, of.layer.index()}};
+  if (of.link > 0) travel.ends = EndsOf(of.side.chunk, of.link);
+  double length_mm = 0;
+  bool any_counts = false;
+  for (const TraceMove& move : moves) {
+    if (move.kind != MoveKind::kTravel || !move.in_print || move.open == of.retracted) continue;
+    if (travel.at.line == 0) travel.at.line = move.line;
+    length_mm += move.length_mm();
+    travel.pieces.push_back({static_cast<float>(move.z_from_mm - base_mm),
+                             static_cast<float>(move.z_to_mm - base_mm),
+                             static_cast<float>(move.length_mm())});
+    if (!of.layer.Counts(of.side, move)) continue;
+    any_counts = true;
+    if (move.states_z) NoteHeight(of, move, seen);
+  }
+  if (length_mm < kLeastMoveMm || !any_counts) return;
+  const bool between = of.side.chunk.links[of.link].new_layer || !of.level;
+  const bool crossing = of.layer.CrossingLength(of.side.chunk, of.link, !of.retracted) > 0;
+  seen.travels[(of.retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
+      std::move(travel));
+}
+
+// The travel in `link`, up to where the nozzle is opened and from there on, as where the head comes
+// down on its way to the next object.
 void Observe(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen) {
   const TraceLink& traced = side.chunk.links[link];
+  absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
   // The travel to the first path shows nothing about travel between layers.
-  const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
-  const bool in_print = moves.empty() || moves.front().in_print;
-  if (traced.first || traced.scripted || !in_print) return;
-  LinkProfiles(layer, side, link, seen).Append();
+  if (moves.empty() || traced.first || traced.scripted || !moves.front().in_print) return;
+  const double to_mm = side.chunk.paths[link].z_mm;
+  double z_mm = moves.front().z_from_mm;
+  const bool level = std::abs(z_mm - to_mm) <= kOneHeightMm;
+  const bool retracted = std::ranges::any_of(moves, [](const TraceMove& move) {
+    return move.kind == MoveKind::kTravel && move.in_print && !move.open;
+  });
+  for (;;) {
+    const auto prime = std::ranges::find(moves, MoveKind::kPriming, &TraceMove::kind);
+    const auto stretch = static_cast<size_t>(prime - moves.begin());
+    ObserveStretch({layer, side, link, to_mm, level, retracted}, moves.first(stretch), z_mm, seen);
+    if (prime == moves.end()) return;
+    z_mm = prime->z_to_mm;
+    moves.remove_prefix(stretch + 1);
+  }
 }
 
 std::string KindText(size_t kind) {
@@ -205,11 +190,11 @@ std::string KindText(size_t kind) {
 }
 
 absl::Span<const TravelProfile> OfLayer(const std::vector<TravelProfile>& travels, int64_t layer) {
-  const auto [first, end] = std::equal_range(
-      travels.begin(), travels.end(), TravelProfile{.at = {0, layer}},
-      [](const TravelProfile& a, const TravelProfile& b) { return a.at.layer < b.at.layer; });
-  if (first == end) return {};
-  return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
+  const auto layer_of = [](const TravelProfile& travel) { return travel.at.layer; };
+  const auto first = std::ranges::lower_bound(travels, layer, {}, layer_of) - travels.begin();
+  const auto end = std::ranges::upper_bound(travels, layer, {}, layer_of) - travels.begin();
+  return absl::MakeConstSpan(travels).subspan(static_cast<size_t>(first),
+                                              static_cast<size_t>(end - first));
 }
 
 // Some slicers lift only in some layers: above a height, or below it.
@@ -222,7 +207,7 @@ Habit HabitOfLayer(const std::vector<TravelProfile>& travels, int64_t layer) {
 bool WasAsLow(const std::vector<TravelProfile>& were, const TravelProfile& travel, float lift) {
   const absl::Span<const TravelProfile> travels = OfLayer(were, travel.at.layer);
   const Height now = HeightOf(travel);
-  return std::any_of(travels.begin(), travels.end(), [&](const TravelProfile& before) {
+  return std::ranges::any_of(travels, [&](const TravelProfile& before) {
     if (before.ends != travel.ends) return false;
     const Height then = HeightOf(before);
     return now.apex_mm >= then.apex_mm - kHeightSlackMm &&

@@ -52,8 +52,8 @@ struct LayerParts {
       return part.steps[0].kind == MoveKind::kTravel && all.HasLike(part) &&
              !tail_feeds.contains(part.steps[0].feed);
     }
-    const bool measured = std::any_of(part.steps.begin(), part.steps.end(),
-                                      [](const PartStep& step) { return step.length_mm > 0; });
+    const bool measured =
+        std::ranges::any_of(part.steps, [](const PartStep& step) { return step.length_mm > 0; });
     return is_level && !measured && level.HasLike(part);
   }
 };
@@ -66,9 +66,8 @@ std::vector<Parts> Missing(const LayerParts& had, const LinkCutter& link, bool f
     std::erase_if(parts, [&](const LinkPart& part) {
       return had.all.Has(part) || (from_script && part.role != LinkPart::kSpeed);
     });
-    const bool own = std::any_of(parts.begin(), parts.end(), [&](const LinkPart& part) {
-      return had.HasOwn(part, link.level());
-    });
+    const bool own = std::ranges::any_of(
+        parts, [&](const LinkPart& part) { return had.HasOwn(part, link.level()); });
     if (!own) cuts.push_back(std::move(parts));
   }
   return cuts;
@@ -93,8 +92,7 @@ void CheckLink(const LayerPair& layer, const LayerParts& had, const LinkCutter& 
                uint32_t link, Observations& seen) {
   std::vector<Parts> missing =
       Missing(had, cutter, layer.index() == 0 && link == layer.first_path_is());
-  const bool none =
-      std::any_of(missing.begin(), missing.end(), [](const Parts& parts) { return parts.empty(); });
+  const bool none = std::ranges::any_of(missing, [](const Parts& parts) { return parts.empty(); });
   if (none) return;
   const uint32_t line = layer.is().MovesOf(link).front().line;
   Parts own = cutter.Parts();
@@ -146,9 +144,8 @@ void ObserveLastParts(const LayerPair& layer, LayerFindings& findings) {
 void CompareParts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const UnprovenLink& link : is.new_links) {
     const auto known = [&was](const LinkPart& part) { return was.parts.Has(part); };
-    const bool fine = std::any_of(
-        link.missing.begin(), link.missing.end(),
-        [&](const Parts& parts) { return std::all_of(parts.begin(), parts.end(), known); });
+    const bool fine = std::ranges::any_of(
+        link.missing, [&](const Parts& parts) { return std::ranges::all_of(parts, known); });
     if (fine) continue;
     breaks.push_back({VerifyRule::kMadeOfParts, 0, link.at,
                       absl::StrCat(link.what, "; no such travel of the original does so")});

@@ -41,13 +41,11 @@ std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
 void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings) {
   if (layer.outer_walls().empty()) return;
   const std::vector<OpenTravel> is = OpenTravels(layer, false);
-  if (std::all_of(is.begin(), is.end(), [](const OpenTravel& travel) { return travel.known; }))
-    return;
+  if (std::ranges::all_of(is, [](const OpenTravel& travel) { return travel.known; })) return;
   const std::vector<OpenTravel> was = OpenTravels(layer, true);
-  const auto longest = std::max_element(
-      was.begin(), was.end(),
-      [](const OpenTravel& a, const OpenTravel& b) { return a.length_mm < b.length_mm; });
-  const uint32_t of_layer = layer.was().LineOf(layer.was().paths[layer.first_path_was()]);
+  const auto longest = std::ranges::max_element(
+      was, [](const OpenTravel& a, const OpenTravel& b) { return a.length_mm < b.length_mm; });
+  const uint32_t of_layer = layer.was().LineOf(layer.first_path_was());
   size_t more = is.size() > was.size() ? is.size() - was.size() : 0;
   for (const OpenTravel& travel : is) {
     if (travel.known) continue;

@@ -81,9 +81,7 @@ bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
 
 bool IsTravel(const TravelStep& step) { return step.kind == MoveKind::kTravel; }
 
-bool Goes(const std::vector<TravelStep>& steps) {
-  return std::any_of(steps.begin(), steps.end(), IsTravel);
-}
+bool Goes(const std::vector<TravelStep>& steps) { return std::ranges::any_of(steps, IsTravel); }
 
 // Where filament moves alone, its acceleration is that of the path or of the travel.
 bool AreAlikeBehindScripts(const TravelStep& a, const TravelStep& b) {
@@ -107,8 +105,8 @@ std::vector<std::pair<uint32_t, uint32_t>> PathsBehindScripts(const LayerPair& l
     if (layer.is().links[is].scripted) are.push_back(is);
   }
   if (were.size() != are.size()) return of_sections;
-  std::sort(were.begin(), were.end());
-  std::sort(are.begin(), are.end());
+  std::ranges::sort(were);
+  std::ranges::sort(are);
   std::vector<std::pair<uint32_t, uint32_t>> pairs;
   for (size_t i = 0; i < were.size(); ++i) pairs.emplace_back(were[i], are[i]);
   return pairs;
@@ -119,8 +117,8 @@ std::vector<std::pair<uint32_t, uint32_t>> PathsBehindScripts(const LayerPair& l
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
   for (const auto& [was, is] : PathsBehindScripts(layer)) {
     if (layer.Ended()) return;
-    const uint32_t before = layer.was().LineOf(layer.was().paths[was]);
-    const uint32_t behind = layer.is().LineOf(layer.is().paths[is]);
+    const uint32_t before = layer.was().LineOf(was);
+    const uint32_t behind = layer.is().LineOf(is);
     if (Winds(layer, was, is)) {
       findings.breaks.push_back({VerifyRule::kBounds, before, behind,
                                  "the travel behind unknown lines winds to this path"});
@@ -134,8 +132,7 @@ void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
       std::erase_if(had, IsTravel);
       std::erase_if(has, IsTravel);
     }
-    const auto [one, other] =
-        std::mismatch(had.begin(), had.end(), has.begin(), has.end(), AreAlikeBehindScripts);
+    const auto [one, other] = std::ranges::mismatch(had, has, AreAlikeBehindScripts);
     if (one == had.end() && other == has.end()) continue;
     findings.breaks.push_back(
         {VerifyRule::kScripts, one == had.end() ? before : one->line,

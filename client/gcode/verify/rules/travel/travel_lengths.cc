@@ -22,9 +22,8 @@ const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
   if (moves.empty()) return nullptr;
   const double printed = moves.front().z_from_mm - kOneHeightMm;
   if (chunk.paths[link].z_mm >= printed) return nullptr;
-  const auto sink = std::find_if(moves.begin(), moves.end(), [printed](const TraceMove& move) {
-    return move.z_to_mm < printed;
-  });
+  const auto sink = std::ranges::find_if(
+      moves, [printed](const TraceMove& move) { return move.z_to_mm < printed; });
   return sink == moves.end() ? nullptr : &*sink;
 }
 
