@@ -21,6 +21,13 @@ inline std::string_view TrimLine(std::string_view text) {
   return text;
 }
 
+// Takes the first line off `text`, and what ends it: `end`.
+inline std::string_view TakeLine(std::string_view& text, std::string_view end = "\n") {
+  const std::string_view line = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(line.size() + end.size(), text.size()));
+  return line;
+}
+
 inline char UpperCase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
 
 // `with` is in capitals, `text` in any case.

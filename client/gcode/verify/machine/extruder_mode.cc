@@ -1,6 +1,5 @@
 #include "client/gcode/verify/machine/extruder_mode.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cstddef>
 
@@ -20,8 +19,7 @@ bool CountsFromTheMoveBefore(std::string_view text) {
   int rises = 0;
   int falls = 0;
   while (!text.empty() && rises + falls < 200) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    std::string_view line = TakeLine(text);
     line = TrimLine(line.substr(0, line.find(';')));
     const size_t e = line.find_first_of("Ee");
     if (e == std::string_view::npos || UpperCase(line[0]) != 'G') continue;

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "client/gcode/verify/machine/command_words.h"
-#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 

@@ -13,14 +13,6 @@
 namespace traverse::gcode {
 namespace {
 
-// The next line without blanks around it; `rest` goes on behind it.
-std::string_view TrimmedLine(std::string_view& rest) {
-  const size_t end = std::min(rest.find('\n'), rest.size());
-  const std::string_view line = TrimLine(rest.substr(0, end));
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return line;
-}
-
 // A line of which no more is needed than what it begins with.
 struct Ahead {
   std::string_view line;
@@ -39,7 +31,7 @@ struct Ahead {
 // The next one that is not blank and no comment; empty if none follows.
 Ahead NextCommand(std::string_view& rest) {
   while (!rest.empty()) {
-    const std::string_view line = TrimmedLine(rest);
+    const std::string_view line = TrimLine(TakeLine(rest));
     if (!line.empty() && line[0] != ';') return Ahead(line);
   }
   return Ahead({});
@@ -52,16 +44,7 @@ constexpr size_t kMostAhead = 16;
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
                                Micro filament) {
-  motion_.from = from;
-  motion_.to = at_;
-  motion_.filament = filament;
-  motion_.pulled = pulled_;
-  motion_.feed = feed_;
-  motion_.number = number;
-  motion_.words = words;
-  motion_.was_retracted = retracted();
-  motion_.has_center = false;
-  motion_.center_x = motion_.center_y = motion_.radius = motion_.turns = 0;
+  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted()};
   moved_at_ = lines_.number();
 }
 
@@ -280,7 +263,7 @@ size_t VerifyMachine::LinesOfLift() const {
   bool lifts = false;
   bool ended = false;
   for (size_t lines = 0; lines < kMostAhead; ++lines) {
-    const Ahead next(TrimmedLine(rest));
+    const Ahead next(TrimLine(TakeLine(rest)));
     if (next.HasReturn()) return 0;
     const auto [line, letter, number] = next;
     if (ended) return letter == 'M' && number == (relative_e_ ? 83 : 82) ? lines + 1 : lines;

@@ -17,11 +17,6 @@ bool IsNear(Point p) { return std::abs(p.x) <= kFarMm && std::abs(p.y) <= kFarMm
 
 int TileOf(int cell, int side) { return cell >= 0 ? cell / side : (cell + 1) / side - 1; }
 
-uint64_t KeyOf(int tile_x, int tile_y) {
-  return (static_cast<uint64_t>(static_cast<uint32_t>(tile_x)) << 32) |
-         static_cast<uint32_t>(tile_y);
-}
-
 size_t IndexIn(int x, int y, int side) {
   return static_cast<size_t>((y & (side - 1)) * side + (x & (side - 1)));
 }
@@ -66,7 +61,7 @@ void HeightGrid::ForEachCell(Point a, Point b, Take take) const {
 }
 
 HeightGrid::Tile* HeightGrid::Find(int tile_x, int tile_y) {
-  const uint64_t key = KeyOf(tile_x, tile_y);
+  const std::pair key(tile_x, tile_y);
   if (key == last_key_) return last_;
   const auto found = tiles_.find(key);
   last_key_ = key;

@@ -13,9 +13,11 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_HEIGHT_GRID_H_
 
 #include <array>
+#include <climits>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/verify/trace/trace.h"
@@ -99,8 +101,8 @@ class HeightGrid {
 
   const double cell_mm_;
   const HeadShape shape_;
-  absl::flat_hash_map<uint64_t, std::unique_ptr<Tile>> tiles_;
-  uint64_t last_key_ = UINT64_MAX;  // of last_
+  absl::flat_hash_map<std::pair<int, int>, std::unique_ptr<Tile>> tiles_;  // by their place
+  std::pair<int, int> last_key_{INT_MAX, INT_MAX};                         // of last_
   Tile* last_ = nullptr;
   Height highest_ = 0;
   uint32_t pass_ = 1;

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 #include "client/gcode/verify/match/laid_over.h"
 #include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/match/stated_settings.h"
 #include "client/gcode/verify/match/touched_walls.h"
-#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -334,10 +332,8 @@ bool LayerPair::CrossesWalls(const Travel& travel) const {
                              [this](const Piece& move) { return MeetsOuterWall(move.a, move.b); });
 }
 
-double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {
-  if (outer_walls_.empty()) return 0;
-  const Travel travel = TravelOf(chunk, link, open, 0);
-  return CrossesWalls(travel) ? travel.length_mm : 0;
+bool LayerPair::CrossesOuterWalls(const TraceChunk& chunk, uint32_t link, bool open) const {
+  return !outer_walls_.empty() && CrossesWalls(TravelOf(chunk, link, open, 0));
 }
 
 double LayerPair::OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link,

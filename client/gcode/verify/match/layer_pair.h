@@ -141,12 +141,12 @@ class LayerPair {
   static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
                             bool any_speed = false);
 
-  // The length of the travel of `link` across outer walls without a retraction (`open`) or with
-  // one; 0 if there is none. The ends, which may lie on walls, do not count.
-  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const;
+  // True if the travel of `link` without a retraction (`open`), or with one, crosses outer walls.
+  // Its ends, which may lie on walls, do not count.
+  bool CrossesOuterWalls(const TraceChunk& chunk, uint32_t link, bool open) const;
 
-  // The same without a retraction, also of travel that comes right over an outer wall that neither
-  // of its ends is that near to, and without `skipped` moves before it.
+  // The length of its travel without a retraction if that does so, or comes right over an outer
+  // wall that neither of its ends is that near to; else 0. Without `skipped` moves before it.
   double OpenLengthOverWalls(const TraceChunk& chunk, uint32_t link, uint32_t skipped) const;
 
   // True if the straight move from `a` to `b`, without its ends, crosses an outer wall.

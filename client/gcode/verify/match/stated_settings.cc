@@ -109,9 +109,7 @@ StatedSettings ReadStatedSettings(std::string_view text) {
   SettingNotes notes;
   std::string cura;
   while (!text.empty()) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string_view line = TakeLine(text);
     if (!line.starts_with(";")) continue;
     if (line.starts_with(kCura)) {
       cura += TrimLine(line.substr(kCura.size()));
@@ -120,11 +118,9 @@ StatedSettings ReadStatedSettings(std::string_view text) {
     }
   }
   for (std::string_view rest = cura; !rest.empty();) {
-    const size_t end = std::min(rest.find("\\n"), rest.size());
-    std::string_view setting = rest.substr(0, end);
+    std::string_view setting = TakeLine(rest, "\\n");
     while (!setting.empty() && setting.back() == '\\') setting.remove_suffix(1);
     notes.Take(setting);
-    rest.remove_prefix(std::min(end + 2, rest.size()));
   }
   return notes.found();
 }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
-#include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/slacks.h"
 
 namespace traverse::gcode {

@@ -104,22 +104,15 @@ void ProgressLog::Append(const TraceChunk& chunk) {
 }
 
 void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<Finding>& breaks) {
-  const size_t common = std::min(was.lines.size(), is.lines.size());
-  for (size_t i = 0; i < common; ++i) {
-    if (was.lines[i].digest == is.lines[i].digest) continue;
-    breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line,
+  const auto [one, other] =
+      std::ranges::mismatch(was.lines, is.lines, {}, &Progress::digest, &Progress::digest);
+  if (one != was.lines.end() || other != is.lines.end()) {
+    breaks.push_back({VerifyRule::kProgress, one == was.lines.end() ? 0 : one->line,
+                      other == is.lines.end() ? 0 : other->line,
                       "this line of progress is out of sequence"});
     return;
   }
-  if (was.lines.size() != is.lines.size()) {
-    const auto line = [common](const ProgressLog& log) {
-      return common < log.lines.size() ? log.lines[common].line : 0;
-    };
-    breaks.push_back(
-        {VerifyRule::kProgress, line(was), line(is), "this line of progress is out of sequence"});
-    return;
-  }
-  for (size_t i = 0; i < common; ++i) ComparePlace(was, is, i, breaks);
+  for (size_t i = 0; i < was.lines.size(); ++i) ComparePlace(was, is, i, breaks);
 }
 
 }  // namespace traverse::gcode

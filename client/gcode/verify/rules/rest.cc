@@ -82,10 +82,11 @@ class IslandFinder {
   // is taken for one island. Pieces beside each other that are of one island are passed by
   // together.
   void JoinWithNear(const Piece& piece) {
-    const auto one = static_cast<int>(piece.path - first_);
     tree_.ForEachLeafNear(
         piece.a, piece.b, reach_[piece.path - first_],
-        [&](uint32_t node) { return !IsWhole(node) || !regions_.AreJoined(one, RegionOf(node)); },
+        [&](uint32_t node) {
+          return !IsWhole(node) || !regions_.AreJoined(RegionOf(piece), RegionOf(node));
+        },
         [&](uint32_t leaf) {
           const absl::Span<const uint32_t> indices = tree_.IndicesOf(leaf);
           for (const uint32_t i : indices) JoinIfNear(piece, tree_.pieces()[i]);
@@ -94,10 +95,10 @@ class IslandFinder {
         });
   }
 
-  // The region of some piece within the node: of all of them, if it is whole.
-  int RegionOf(uint32_t node) const {
-    return static_cast<int>(tree_.pieces()[tree_.IndicesOf(node)[0]].path - first_);
-  }
+  int RegionOf(const Piece& piece) const { return static_cast<int>(piece.path - first_); }
+
+  // That of some piece within the node: of all of them, if it is whole.
+  int RegionOf(uint32_t node) const { return RegionOf(tree_.pieces()[tree_.IndicesOf(node)[0]]); }
 
   // True if all pieces within a node are of one region; false also where nobody has looked at one
   // of the nodes within it since that is so.
@@ -106,8 +107,7 @@ class IslandFinder {
     if (tree_.IsLeaf(node)) {
       const absl::Span<const uint32_t> indices = tree_.IndicesOf(node);
       whole_[node] = std::ranges::all_of(indices, [&](uint32_t i) {
-        const auto region = static_cast<int>(tree_.pieces()[i].path - first_);
-        return regions_.AreJoined(region, RegionOf(node));
+        return regions_.AreJoined(RegionOf(tree_.pieces()[i]), RegionOf(node));
       });
     } else {
       const uint32_t second = tree_.SecondOf(node);
@@ -118,12 +118,11 @@ class IslandFinder {
   }
 
   void JoinIfNear(const Piece& piece, const Piece& other) {
-    const uint32_t one = piece.path - first_;
-    const uint32_t two = other.path - first_;
-    if (regions_.AreJoined(static_cast<int>(one), static_cast<int>(two))) return;
-    const double reach = std::max((reach_[one] + reach_[two]) / 2, kLeastReachMm);
+    if (regions_.AreJoined(RegionOf(piece), RegionOf(other))) return;
+    const double sum = reach_[piece.path - first_] + reach_[other.path - first_];
+    const double reach = std::max(sum / 2, kLeastReachMm);
     if (DistanceOfPieces(piece.a, piece.b, other.a, other.b) > reach) return;
-    regions_.Join(static_cast<int>(one), static_cast<int>(two));
+    regions_.Join(RegionOf(piece), RegionOf(other));
     --apart_;
   }
 

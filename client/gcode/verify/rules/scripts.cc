@@ -35,30 +35,28 @@ bool AreEqual(const TraceMove& one, const TraceMove& other) {
   return one.identity == other.identity;
 }
 
+// Adds a break where `was` and `is` first are not `alike`, or one of them goes on alone.
+void Compare(absl::Span<const TraceMove> was, absl::Span<const TraceMove> is,
+             bool (*alike)(const TraceMove&, const TraceMove&), const char* what,
+             std::vector<Finding>& breaks) {
+  const auto [one, other] = std::ranges::mismatch(was, is, alike);
+  if (one == was.end() && other == is.end()) return;
+  breaks.push_back({VerifyRule::kScripts, one == was.end() ? 0 : one->line,
+                    other == is.end() ? 0 : other->line, what});
+}
+
 }  // namespace
 
 void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
-  const absl::Span<const TraceMove> moves = Leaving(was);
-  const absl::Span<const TraceMove> others = Leaving(is);
-  const auto [a, b] = std::ranges::mismatch(moves, others, DoTheSame);
-  if (a == moves.end() && b == others.end()) return;
-  breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
-                    b == others.end() ? 0 : b->line,
-                    "leaves the print differently from the original"});
+  Compare(Leaving(was), Leaving(is), DoTheSame, "leaves the print differently from the original",
+          breaks);
 }
 
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
-  for (size_t i = 0; i < layer.section_count(); ++i) {
-    if (layer.Ended()) return;
-    const absl::Span<const TraceMove> moves =
-        FixedMoves(layer.was(), layer.SectionWas(i).first_path);
-    const absl::Span<const TraceMove> others =
-        FixedMoves(layer.is(), layer.SectionIs(i).first_path);
-    const auto [a, b] = std::ranges::mismatch(moves, others, AreEqual);
-    if (a == moves.end() && b == others.end()) continue;
-    findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
-                               b == others.end() ? 0 : b->line,
-                               "the moves before an unknown line differ from the original's"});
+  for (size_t i = 0; i < layer.section_count() && !layer.Ended(); ++i) {
+    Compare(FixedMoves(layer.was(), layer.SectionWas(i).first_path),
+            FixedMoves(layer.is(), layer.SectionIs(i).first_path), AreEqual,
+            "the moves before an unknown line differ from the original's", findings.breaks);
   }
 }
 

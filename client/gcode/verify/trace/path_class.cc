@@ -4,8 +4,6 @@
 #include <cctype>
 #include <string>
 
-#include "client/gcode/verify/text.h"
-
 namespace traverse::gcode {
 namespace {
 

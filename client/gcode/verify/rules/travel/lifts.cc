@@ -155,7 +155,7 @@ void ObserveStretch(const LinkTravel& of, absl::Span<const TraceMove> moves, dou
   }
   if (length_mm < kLeastMoveMm || !any_counts) return;
   const bool between = of.side.chunk.links[of.link].new_layer || !of.level;
-  const bool crossing = of.layer.CrossingLength(of.side.chunk, of.link, !of.retracted) > 0;
+  const bool crossing = of.layer.CrossesOuterWalls(of.side.chunk, of.link, !of.retracted);
   seen.travels[(of.retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
       std::move(travel));
 }
