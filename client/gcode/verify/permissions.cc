@@ -48,8 +48,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
   permissions.policy = static_cast<Policy>(name - std::begin(kPolicyNames));
   while (!allow.empty()) {
     const std::string_view word = TakeWord(allow, ",+");
-    const auto* known =
-        std::ranges::find_if(kPermissions, [word](const Permission& p) { return p.name == word; });
+    const auto* known = std::ranges::find(kPermissions, word, &Permission::name);
     if (known == std::end(kPermissions)) {
       return absl::InvalidArgumentError(absl::StrCat(
           "nothing to allow by the name `", std::string(word),

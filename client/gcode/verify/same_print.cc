@@ -12,7 +12,7 @@ namespace {
 
 // A line of one side that the other side's section lacks, or has fewer times.
 struct Odd {
-  size_t number = 0;
+  uint32_t number = 0;
   std::string text;
 };
 
@@ -65,7 +65,7 @@ VerifyBreak MultisetDifference(const Part& original, const Part& optimised, bool
   const char* under = deposits ? " under the same conditions" : "";
   const auto differ = [&](const Part& a, const Part& b, const Odd& odd) {
     const Section& section = b.section();
-    const size_t first = deposits ? section.first_line : section.first_note;
+    const uint32_t first = deposits ? section.first_line : section.first_note;
     const bool is = &a == &optimised;
     return VerifyBreak{
         VerifyRule::kSamePrint, is ? first : odd.number, is ? odd.number : first, -1,
@@ -240,8 +240,8 @@ std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised
   if (!whole || sections_was.size() == sections_is.size()) return found;
   const Side& longer = sections_was.size() > sections_is.size() ? original : optimised;
   const Side& shorter = &longer == &original ? optimised : original;
-  const size_t line = longer.cut.sections[common].first_line;
-  const size_t last = common > 0 ? shorter.cut.sections[common - 1].last_line : 0;
+  const uint32_t line = longer.cut.sections[common].first_line;
+  const uint32_t last = common > 0 ? shorter.cut.sections[common - 1].last_line : 0;
   const bool lacks = &longer == &original;
   found.push_back({VerifyRule::kSamePrint, lacks ? line : last, lacks ? last : line, -1,
                    absl::StrFormat("%s:%d: continues where %s ends, with line %d", longer.name,

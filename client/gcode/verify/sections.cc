@@ -29,16 +29,14 @@ bool IsStateComment(const VerifyLine& line) {
 // Waiting or not: of the nozzle, the bed, the chamber, the heat break.
 bool Heats(std::string_view text) {
   constexpr std::string_view kCommands[] = {"M104", "M109", "M140", "M190", "M141", "M142"};
-  return std::ranges::any_of(
-      kCommands, [text](std::string_view command) { return text.starts_with(command); });
+  return BeginsWithAny(text, kCommands);
 }
 
 // Comments that slicers put after the mark of a layer, where scripts look for them.
 bool SaysOfLayer(std::string_view text) {
   constexpr std::string_view kNotes[] = {
       ";Z:", ";HEIGHT:", "; Z_HEIGHT:", "; LAYER_HEIGHT:", "; layer num"};
-  return std::ranges::any_of(kNotes,
-                             [text](std::string_view note) { return text.starts_with(note); });
+  return BeginsWithAny(text, kNotes);
 }
 
 }  // namespace
@@ -100,9 +98,10 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   last_line_ = line.number;
   NoteHeader(line, mark);
   // Unknown commands leave the head elsewhere, so a move to where it was does move it.
-  if ((line.moves || line.stays) && (in_script_ || section_.deposits.count == 0)) {
+  const bool before_deposits = in_script_ || section_.deposits.count == 0;
+  if ((line.moves || line.stays) && before_deposits) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
-  } else if ((line.sets || IsStateComment(line)) && (in_script_ || section_.deposits.count == 0)) {
+  } else if ((line.sets || IsStateComment(line)) && before_deposits) {
     section_.moves = Mix(section_.moves, DigestOf(line.text));
   }
   if (line.travels) section_.lowest = std::min(section_.lowest, machine.z());
@@ -161,7 +160,7 @@ void SectionCutter::Finish(const VerifyMachine& machine) {
 // Notes since the last deposit belong to what comes: whatever path that begins with, its comments
 // stand before it.
 void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
-  const size_t first_note = std::max(last_deposit_ + 1, section_.first_note);
+  const uint32_t first_note = std::max(last_deposit_ + 1, section_.first_note);
   const DigestSet notes = std::exchange(loose_notes_, {});
   auto said = std::exchange(loose_said_, {});
   Close(machine, last_line_, 0, false);
@@ -173,7 +172,7 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   loose_said_ = std::move(said);
 }
 
-void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,
+void SectionCutter::Close(const VerifyMachine& machine, uint32_t last_line, uint64_t fence,
                           bool fixed, bool label) {
   section_.last_line = section_.last_note = last_line;
   TakeLoose(section_.deposits.count + 1);

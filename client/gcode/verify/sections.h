@@ -44,12 +44,12 @@ struct DigestSet {
 };
 
 struct Section {
-  size_t first_line = 0;
-  size_t last_line = 0;  // the line that ends it
+  uint32_t first_line = 0;
+  uint32_t last_line = 0;  // the line that ends it
   DigestSet deposits;
-  DigestSet notes;        // comments, in lines of their own range:
-  size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
-  size_t last_note = 0;
+  DigestSet notes;          // comments, in lines of their own range:
+  uint32_t first_note = 0;  // behind a change of height they are counted from the last deposit on
+  uint32_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
   uint64_t moves = 0;    // of everything but deposits, and of settings, before the first deposit
   bool command = false;  // it ends with a command
@@ -82,7 +82,7 @@ struct Sections {
   std::vector<Section> sections;
   size_t of_script = 0;  // the first sections, before the first mark of a layer
   uint32_t ignored = 0;  // lines of the head, and where the last of them stands
-  size_t last_ignored = 0;
+  uint32_t last_ignored = 0;
 };
 
 // Cuts a text, line by line. Ignores comments before the first command that begin with `ignored`,
@@ -118,7 +118,7 @@ class SectionCutter {
  private:
   bool GoesOnRising(const Motion& motion) const;
   void CutAtHeight(const VerifyMachine& machine);
-  void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed,
+  void Close(const VerifyMachine& machine, uint32_t last_line, uint64_t fence, bool fixed,
              bool label = false);
   bool Ignores(const VerifyLine& line);
   void TakeLoose(uint64_t position);  // among the deposits of the section
@@ -130,8 +130,8 @@ class SectionCutter {
   Section section_;
   DigestSet loose_notes_;                            // since the last deposit
   std::array<std::vector<uint64_t>, 2> loose_said_;  // comments and commands among them
-  size_t last_line_ = 0;
-  size_t last_deposit_ = 0;
+  uint32_t last_line_ = 0;
+  uint32_t last_deposit_ = 0;
   bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
@@ -150,7 +150,7 @@ class SectionLines {
 
   // Calls visit(line) for the lines `first` to `last`.
   template <typename Visit>
-  void ForEach(size_t first, size_t last, Visit visit) {
+  void ForEach(uint32_t first, uint32_t last, Visit visit) {
     if (first <= passed_) *this = SectionLines(text_);
     VerifyLine line;
     while (passed_ + 1 < first && machine_.Next(line)) passed_ = line.number;
@@ -160,7 +160,7 @@ class SectionLines {
  private:
   std::string_view text_;
   VerifyMachine machine_;  // behind line passed_
-  size_t passed_ = 0;
+  uint32_t passed_ = 0;
 };
 
 }  // namespace traverse::gcode

@@ -9,6 +9,13 @@
 
 namespace traverse::gcode {
 
+// True if `text` begins with one of `marks`.
+template <typename Marks>
+bool BeginsWithAny(std::string_view text, const Marks& marks) {
+  return std::ranges::any_of(marks,
+                             [text](std::string_view mark) { return text.starts_with(mark); });
+}
+
 // The byte order mark of UTF-8, with which some editors begin a text.
 inline constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
 

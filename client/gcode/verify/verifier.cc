@@ -188,8 +188,7 @@ void Verifier::CheckLabels(size_t first, size_t end) {
 
 void Verifier::CheckLabel(const Section& was, const Section& is) {
   const auto add = [&](VerifyRule rule, const char* what) {
-    findings_.push_back(
-        {rule, static_cast<uint32_t>(was.last_line), static_cast<uint32_t>(is.last_line), what});
+    findings_.push_back({rule, was.last_line, is.last_line, what});
   };
   if (was.lift != is.lift) {
     add(VerifyRule::kLifts, "at another height at this label of an object than in the original");
@@ -345,7 +344,7 @@ void Verifier::Add(Finding finding) {
 // may have changed, which is compared with nothing: there is one.
 void Verifier::CheckText() {
   if (is_.cut().ignored > std::max(was_.cut().ignored, 1u)) {
-    findings_.push_back({VerifyRule::kSamePrint, 1, static_cast<uint32_t>(is_.cut().last_ignored),
+    findings_.push_back({VerifyRule::kSamePrint, 1, is_.cut().last_ignored,
                          "one more line that says by what this file was optimised"});
   }
   if (original_.text.starts_with(kMarkOfUtf8) != optimised_.text.starts_with(kMarkOfUtf8)) {

@@ -10,17 +10,6 @@
 namespace traverse::gcode {
 namespace {
 
-// `words` has `word` between blanks.
-bool HasWord(std::string_view words, std::string_view word) {
-  for (size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
-    const size_t end = at + word.size();
-    if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) {
-      return !word.empty();
-    }
-  }
-  return false;
-}
-
 uint64_t WordOr0(const CommandWords& words, char letter) {
   return static_cast<uint64_t>(words.ValueOr(letter, 0));
 }
@@ -94,8 +83,7 @@ void PrintSettings::RenewFan() {
 // All of `values`, or none if there would be too many names.
 bool PrintSettings::SetNamed(const std::vector<NamedValue>& values) {
   const auto place_of = [this](uint64_t key) {
-    const auto known =
-        std::ranges::find_if(named_, [key](const Named& named) { return named.key == key; });
+    const auto known = std::ranges::find(named_, key, &Named::key);
     return static_cast<size_t>(known - named_.begin());
   };
   for (const NamedValue& given : values) {
@@ -274,11 +262,10 @@ bool PrintSettings::SetLimits(const Parameters& parameters) {
       {"VELOCITY", kKlipperSpeed},
   };
   std::vector<std::pair<size_t, uint64_t>> settings;
-  for (const auto& parameter : parameters) {
-    const auto known = std::ranges::find_if(
-        kNames, [&parameter](const auto& entry) { return entry.first == parameter.first; });
+  for (const auto& [name, value] : parameters) {
+    const auto known = std::ranges::find(kNames, name, &std::pair<std::string_view, size_t>::first);
     if (known == std::end(kNames)) return false;
-    settings.emplace_back(known->second, parameter.second);
+    settings.emplace_back(known->second, value);
   }
   for (const auto& [slot, value] : settings) Set(slot, value);
   return true;
@@ -290,19 +277,20 @@ bool PrintSettings::SetNamedByKlipper(std::string_view command, const Parameters
     std::string_view command;
     std::string_view name;
     bool fan;
-    std::string_view sets;
+    std::vector<std::string_view> sets;
   };
-  constexpr Kind kKinds[] = {
-      {"SET_FAN_SPEED", "FAN", true, "SPEED"},
-      {"SET_LED", "LED", false, "RED GREEN BLUE WHITE SYNC TRANSMIT"},
-      {"SET_TMC_CURRENT", "STEPPER", false, "CURRENT HOLDCURRENT"},
-      {"SET_INPUT_SHAPER", "", false,
-       "SHAPER_FREQ_X SHAPER_FREQ_Y SHAPER_TYPE SHAPER_TYPE_X SHAPER_TYPE_Y DAMPING_RATIO_X "
-       "DAMPING_RATIO_Y"},
+  static const std::vector<Kind> kinds = {
+      {"SET_FAN_SPEED", "FAN", true, {"SPEED"}},
+      {"SET_LED", "LED", false, {"RED", "GREEN", "BLUE", "WHITE", "SYNC", "TRANSMIT"}},
+      {"SET_TMC_CURRENT", "STEPPER", false, {"CURRENT", "HOLDCURRENT"}},
+      {"SET_INPUT_SHAPER",
+       "",
+       false,
+       {"SHAPER_FREQ_X", "SHAPER_FREQ_Y", "SHAPER_TYPE", "SHAPER_TYPE_X", "SHAPER_TYPE_Y",
+        "DAMPING_RATIO_X", "DAMPING_RATIO_Y"}},
   };
-  const auto kind =
-      std::ranges::find_if(kKinds, [command](const Kind& one) { return one.command == command; });
-  if (kind == std::end(kKinds)) return false;
+  const auto kind = std::ranges::find(kinds, command, &Kind::command);
+  if (kind == kinds.end()) return false;
   uint64_t of = DigestOf(command);
   bool named = kind->name.empty();
   for (const auto& [name, value] : parameters) {
@@ -313,7 +301,7 @@ bool PrintSettings::SetNamedByKlipper(std::string_view command, const Parameters
   std::vector<NamedValue> values;
   for (const auto& [name, value] : parameters) {
     if (name == kind->name) continue;
-    if (!HasWord(kind->sets, name)) return false;
+    if (std::ranges::count(kind->sets, name) == 0) return false;
     values.push_back({{Mix(of, DigestOf(name)), kind->fan}, value});
   }
   return named && !values.empty() && SetNamed(values);

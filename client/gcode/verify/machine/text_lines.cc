@@ -34,7 +34,7 @@ bool TextLines::Next(std::string_view& line) {
 }
 
 void TextLines::NoteEnd(size_t bit) {
-  if ((ends_ >> bit & 1u) == 0) first_with_end_[bit] = static_cast<uint32_t>(number_);
+  if ((ends_ >> bit & 1u) == 0) first_with_end_[bit] = number_;
   ends_ |= 1u << bit;
 }
 

@@ -19,7 +19,7 @@ class TextLines {
   // stands. False at the end.
   bool Next(std::string_view& line);
 
-  size_t number() const { return number_; }        // of the last line, from 1
+  uint32_t number() const { return number_; }      // of the last line, from 1
   std::string_view rest() const { return rest_; }  // behind it
 
   // Which line ends there were so far: bit n for LF behind n carriage returns, and kLoneReturn.
@@ -36,7 +36,7 @@ class TextLines {
   std::string_view rest_;
   const char* line_feed_ = nullptr;  // the next one, or the end
   const char* return_ = nullptr;     // the same of carriage returns
-  size_t number_ = 0;
+  uint32_t number_ = 0;
   uint32_t ends_ = 0;
   std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of ends_]
 };

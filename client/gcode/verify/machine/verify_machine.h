@@ -31,7 +31,7 @@ enum class LineRole : uint8_t {
 };
 
 struct VerifyLine {
-  size_t number = 0;  // from 1
+  uint32_t number = 0;  // from 1
   std::string_view text;
   LineRole role = LineRole::kNothing;
   uint64_t digest = 0;      // kDeposit: of geometry, extrusion, speed and state; else of the text

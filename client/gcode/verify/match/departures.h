@@ -17,6 +17,13 @@
 
 namespace traverse::gcode {
 
+// Whether two moves are of one kind and speed, end at one height and move as much filament.
+inline bool AreAlike(const TraceMove& a, const TraceMove& b) {
+  return a.kind == b.kind && std::abs(a.z_to_mm - b.z_to_mm) <= kHeightSlackMm &&
+         a.feed == b.feed && a.spiral == b.spiral &&
+         std::abs(a.filament - b.filament) <= VerifyMachine::kSlack;
+}
+
 inline bool Retracts(const TraceMove& move) {
   return move.kind == MoveKind::kRetraction || (move.kind == MoveKind::kWipe && move.filament < 0);
 }

@@ -63,6 +63,7 @@ class LayerPair {
   const LayerSide& Side(bool original) const { return original ? side_was_ : side_is_; }
   const TraceChunk& was() const { return was_; }
   const TraceChunk& is() const { return is_; }
+  size_t place() const { return layer_; }  // among the layers of the chunks
   int64_t index() const { return was_.layers[layer_].index; }
 
   uint32_t first_path_was() const { return side_was_.first_path; }

@@ -20,11 +20,6 @@ constexpr std::array<std::string_view, 8> kNames = {
 
 constexpr std::array<std::string_view, 2> kFilamentNames = {"filamentdiameter", "materialdiameter"};
 
-template <size_t kSize>
-bool IsOneOf(const std::array<std::string_view, kSize>& names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 constexpr size_t kLongestName = 64;
 
 // Where CuraEngine keeps its settings: lines of 80 characters, in which a new line is "\\n".
@@ -71,9 +66,9 @@ class SettingNotes {
     if (end == std::string_view::npos || end > kLongestName) return;
     const std::string name = LettersOf(setting.substr(0, end));
     const std::string_view value = setting.substr(end + 1);
-    if (IsOneOf(kNames, name)) {
+    if (std::ranges::count(kNames, name) > 0) {
       TakeGreatest(value, found_.least_layer_seconds);
-    } else if (IsOneOf(kFilamentNames, name)) {
+    } else if (std::ranges::count(kFilamentNames, name) > 0) {
       TakeGreatest(value, found_.filament_mm);
     } else if (name == kHeadDistance) {
       TakeGreatest(value, found_.head_above_tip_mm);

@@ -65,11 +65,10 @@ absl::flat_hash_set<uint64_t> DeparturesOf(const TraceChunk& was, uint32_t first
 // Of the layer and, as travel to it leaves a path of another one, of the layer before.
 std::optional<absl::flat_hash_set<uint64_t>> DeparturesTo(const LayerPair& layer) {
   const std::vector<TraceLayer>& layers = layer.was().layers;
-  const auto own = std::ranges::find_if(
-      layers, [&layer](const TraceLayer& other) { return other.index == layer.index(); });
+  const size_t own = layer.place();
   // What is before a chunk is not there any more.
-  if (own == layers.begin() && layer.index() > 0) return std::nullopt;
-  const TraceLayer& first = own == layers.begin() ? *own : *(own - 1);
+  if (own == 0 && layer.index() > 0) return std::nullopt;
+  const TraceLayer& first = layers[own == 0 ? 0 : own - 1];
   uint32_t first_path = layer.first_path_was();
   for (uint32_t s = first.first_section; s < first.end_section; ++s) {
     first_path = std::min(first_path, layer.was().sections[s].first_path);

@@ -99,30 +99,30 @@ class Cells {
 
 class OrderKeeper {
  public:
-  OrderKeeper(const LayerPair& layer, const RuleContext& context)
-      : layer_(layer), permissions_(context.permissions) {
+  OrderKeeper(const LayerPair& layer, const RuleContext& context, LayerFindings& findings)
+      : layer_(layer), permissions_(context.permissions), findings_(findings) {
     for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
       groups_.push_back(GroupOf(layer.ClassOf(path), context.settings));
       fans_of_paths_ &= layer.was().paths[path].states_fan;
     }
   }
 
-  void Check(size_t section, LayerFindings& findings) {
-    const absl::Span<const Visit> visits = layer_.SectionVisits(section);
+  void Check(size_t section) {
+    visits_ = layer_.SectionVisits(section);
     const TraceSection& was = layer_.SectionWas(section);
     place_.assign(was.end_path - was.first_path, UINT32_MAX);
     bool as_sliced = true;
-    for (uint32_t i = 0; i < visits.size(); ++i) {
-      uint32_t& place = place_[visits[i].path - was.first_path];
+    for (uint32_t i = 0; i < visits_.size(); ++i) {
+      uint32_t& place = place_[visits_[i].path - was.first_path];
       if (place == UINT32_MAX) place = i;
-      as_sliced &= i == 0 || visits[i].path >= visits[i - 1].path;
+      as_sliced &= i == 0 || visits_[i].path >= visits_[i - 1].path;
     }
     if (as_sliced) return;
     first_ = was.first_path;
-    CheckSkirts(visits, findings);
-    CheckTowers(visits, findings);
-    if (careful() && !permissions_.fan_order && !fans_of_paths_) CheckFans(visits, findings);
-    CheckNear(was, visits, findings);
+    CheckSkirts();
+    CheckTowers();
+    if (careful() && !permissions_.fan_order && !fans_of_paths_) CheckFans();
+    CheckNear(was);
   }
 
  private:
@@ -146,30 +146,25 @@ class OrderKeeper {
   }
 
   // A skirt is seldom near anything, but it must be printed first.
-  void CheckSkirts(absl::Span<const Visit> visits, LayerFindings& findings) {
-    uint32_t latest = 0;  // of those printed so far, the one that is the last in the original
-    bool any = false;
-    for (const Visit& visit : visits) {
-      if (GroupAt(visit.path) == PathClass::kTower) continue;
-      if (GroupAt(visit.path) != PathClass::kSkirt) {
-        if (!any || visit.path > latest) latest = visit.path;
-        any = true;
-      } else if (any && latest > visit.path) {
-        Report(visit.path, latest, visits, findings);
-        return;
-      }
+  void CheckSkirts() {
+    uint32_t latest = first_;  // of those printed so far, the one that is the last in the original
+    for (const Visit& visit : visits_) {
+      const PathClass group = GroupAt(visit.path);
+      if (group == PathClass::kSkirt && visit.path < latest) return Report(visit.path, latest);
+      const bool passes = group != PathClass::kSkirt && group != PathClass::kTower;
+      if (passes) latest = std::max(latest, visit.path);
     }
   }
 
   // A tower cleans the nozzle for what comes next, and a script has reasons of its own: nothing
   // passes them.
-  void CheckTowers(absl::Span<const Visit> visits, LayerFindings& findings) {
+  void CheckTowers() {
     uint32_t latest = first_;        // of those printed so far, the last one of the original
     uint32_t latest_tower = first_;  // the same of towers and scripts
-    for (const Visit& visit : visits) {
+    for (const Visit& visit : visits_) {
       const bool tower = GroupAt(visit.path) == PathClass::kTower;
       const uint32_t behind = tower ? latest : latest_tower;
-      if (visit.path < behind) return Report(visit.path, behind, visits, findings);
+      if (visit.path < behind) return Report(visit.path, behind);
       latest = std::max(latest, visit.path);
       if (tower) latest_tower = std::max(latest_tower, visit.path);
     }
@@ -177,16 +172,16 @@ class OrderKeeper {
 
   // Fans take time to change: what comes before such a change stays before it; unless the layer
   // states the fan of each path, as a part of that.
-  void CheckFans(absl::Span<const Visit> visits, LayerFindings& findings) {
+  void CheckFans() {
     std::vector<uint32_t> changes(place_.size(), 0);  // [path - first_], so far
     for (size_t i = 1; i < changes.size(); ++i) {
       const TracePath* path = &layer_.was().paths[first_ + i];
       changes[i] = changes[i - 1] + (path->fan != (path - 1)->fan ? 1 : 0);
     }
     uint32_t latest = first_;
-    for (const Visit& visit : visits) {
+    for (const Visit& visit : visits_) {
       if (changes[visit.path - first_] < changes[latest - first_]) {
-        return Report(visit.path, latest, visits, findings);
+        return Report(visit.path, latest);
       }
       latest = std::max(latest, visit.path);
     }
@@ -202,7 +197,7 @@ class OrderKeeper {
   // original. Of those before a piece only those of groups that matter to it are looked at, and
   // only if one of them was turned around with it. Where that is more than kMostPairs for each
   // piece of the section, all that share a cell count as near: such a layer is none of a print.
-  void CheckNear(const TraceSection& was, absl::Span<const Visit> visits, LayerFindings& findings) {
+  void CheckNear(const TraceSection& was) {
     std::vector<Piece> pieces;
     for (uint32_t path = was.first_path; path < was.end_path; ++path) {
       const absl::Span<const Piece> own = layer_.PiecesOf(path);
@@ -223,7 +218,7 @@ class OrderKeeper {
           const uint32_t other = TurnedNear(pieces, i, earlier[k]);
           if (other == UINT32_MAX) continue;
           reported_[path - first_] = true;
-          Report(other, path, visits, findings);
+          Report(other, path);
         }
         Earlier& own = earlier[static_cast<size_t>(group)];
         if (own.pieces.empty() || PlaceOf(path) > PlaceOf(own.last_path)) own.last_path = path;
@@ -247,23 +242,24 @@ class OrderKeeper {
   }
 
   // `later` comes before `earlier`.
-  void Report(uint32_t earlier, uint32_t later, absl::Span<const Visit> visits,
-              LayerFindings& findings) {
+  void Report(uint32_t earlier, uint32_t later) {
     const TraceChunk& was = layer_.was();
-    const Visit& visit = visits[PlaceOf(later)];
-    findings.breaks.push_back(
+    const Visit& visit = visits_[PlaceOf(later)];
+    findings_.breaks.push_back(
         {VerifyRule::kOrder, was.LineOf(later), layer_.LineOf(visit),
          absl::StrFormat("this %s is printed before the %s of line %d of the "
                          "original, but there it comes after it",
                          PathClassName(layer_.ClassOf(later)),
                          PathClassName(layer_.ClassOf(earlier)), was.LineOf(earlier)),
-         layer_.LineOf(visits[PlaceOf(earlier)])});
+         layer_.LineOf(visits_[PlaceOf(earlier)])});
   }
 
   const LayerPair& layer_;
   const VerifyPermissions permissions_;
-  std::vector<PathClass> groups_;  // [path - first path of the layer]
-  std::vector<uint32_t> place_;    // [path - first path of the section] in the section's visits
+  LayerFindings& findings_;
+  absl::Span<const Visit> visits_;  // of the section
+  std::vector<PathClass> groups_;   // [path - first path of the layer]
+  std::vector<uint32_t> place_;     // [path - first path of the section] in the section's visits
   uint32_t first_ = 0;
   bool fans_of_paths_ = true;   // each path of the layer states its own
   std::vector<bool> reported_;  // [path - first_]
@@ -308,8 +304,8 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
 }  // namespace
 
 void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
-  OrderKeeper keeper(layer, context);
-  for (size_t k = 0; k < layer.section_count(); ++k) keeper.Check(k, findings);
+  OrderKeeper keeper(layer, context, findings);
+  for (size_t k = 0; k < layer.section_count(); ++k) keeper.Check(k);
   CheckMovedObjects(layer, findings);
 }
 

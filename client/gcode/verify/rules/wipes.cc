@@ -56,18 +56,17 @@ double TurnedMm(const TraceMove& arc, absl::Span<const Piece> pieces) {
   return distance(arc.middle) - std::min(distance(mirrored), distance(round));
 }
 
-// Whether two lines that meet make a turn of more than 170, or 150, degrees.
-bool TurnsBack(Point a, Point b, Point c) { return CosineOfTurn(a, b, c) < -0.985; }
-bool NearlyTurnsBack(Point a, Point b, Point c) { return CosineOfTurn(a, b, c) < -0.866; }
-
 // Whether the wipe turns back between the two moves, where its path has no such corner.
 bool TurnsBackBetween(const TraceMove& before, const TraceMove& move,
                       absl::Span<const Piece> pieces) {
-  if (before.arc || move.arc || !TurnsBack(before.from, move.from, move.to)) return false;
+  constexpr double kTurn = -0.985;        // of 170 degrees
+  constexpr double kNearlyTurn = -0.866;  // of 150 degrees
+  if (before.arc || move.arc) return false;
+  if (CosineOfTurn(before.from, move.from, move.to) >= kTurn) return false;
   for (size_t i = 0; i < pieces.size(); ++i) {
     const Piece& next = pieces[i + 1 < pieces.size() ? i + 1 : 0];
     if (Distance(pieces[i].b, move.from) > kOnPathMm) continue;
-    if (NearlyTurnsBack(pieces[i].a, pieces[i].b, next.b)) return false;
+    if (CosineOfTurn(pieces[i].a, pieces[i].b, next.b) < kNearlyTurn) return false;
   }
   return true;
 }

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <string>
 
+#include "client/gcode/verify/text.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -104,8 +106,7 @@ std::string Plain(std::string_view name) {
 
 PathClass Find(std::string_view name) {
   const std::string plain = Plain(name);
-  const auto* found =
-      std::ranges::find_if(kNames, [&plain](const Name& known) { return known.name == plain; });
+  const auto* found = std::ranges::find(kNames, plain, &Name::name);
   return found == std::end(kNames) ? PathClass::kUnnamed : found->path_class;
 }
 
@@ -129,9 +130,8 @@ std::optional<PathClass> ClassOfComment(std::string_view comment) {
   if (comment.starts_with("'")) {
     const std::string_view name = comment.substr(1, comment.find('\'', 1) - 1);
     // Travel stands between paths, and says nothing of them.
-    if (name.starts_with("Travel") || name.starts_with("Destring") || name.starts_with("Wipe")) {
-      return std::nullopt;
-    }
+    constexpr std::string_view kMoves[] = {"Travel", "Destring", "Wipe"};
+    if (BeginsWithAny(name, kMoves)) return std::nullopt;
     return Find(name);
   }
   for (const Name& name : kNames) {

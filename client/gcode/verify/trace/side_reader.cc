@@ -1,6 +1,6 @@
 #include "client/gcode/verify/trace/side_reader.h"
 
-#include <algorithm>
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -18,10 +18,7 @@ constexpr size_t kLinesToLimit = 256;
 // Marks beyond this much of a file are not its first ones.
 constexpr size_t kHead = 1 << 20;
 
-bool IsLayerMark(std::string_view text) {
-  return std::ranges::any_of(
-      kLayerMarks, [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; });
-}
+bool IsLayerMark(std::string_view text) { return BeginsWithAny(text, kLayerMarks); }
 
 }  // namespace
 

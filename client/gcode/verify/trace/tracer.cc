@@ -125,28 +125,24 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   } else if (line.moves) {
     TakeMove(line, machine, section);
   }
-  const auto number = static_cast<uint32_t>(line.number);
   states_fan_ |= line.sets_fan;
   if (line.role == LineRole::kDeposit || line.role == LineRole::kFence ||
       line.role == LineRole::kFixed) {
-    last_held_line_ = number;
+    last_held_line_ = line.number;
     held_seconds_ = seconds_;
   }
   if (line.role == LineRole::kProgress) {
-    const double now = seconds_;
-    chunk_.progress.push_back({line.digest,
-                               number,
-                               section,
-                               PercentTold(line.text),
-                               now,
-                               {begun_seconds_, left_seconds_, now, now}});
+    const std::array<double, 4> places{begun_seconds_, left_seconds_, seconds_, seconds_};
+    chunk_.progress.push_back(
+        {line.digest, line.number, section, PercentTold(line.text), seconds_, places});
     ++without_next_;
   }
   if (line.sets_back) {
-    chunk_.line_faults.push_back({section, number, LineFaultKind::kSetsBack});
+    chunk_.line_faults.push_back({section, line.number, LineFaultKind::kSetsBack});
   }
-  if (line.command != 0 && line.role != LineRole::kProgress)
-    pending_commands_.push_back({line.command, 0, number});
+  if (line.command != 0 && line.role != LineRole::kProgress) {
+    pending_commands_.push_back({line.command, 0, line.number});
+  }
   if (line.role == LineRole::kFixed) {
     link_.scripted = true;
     link_.fixed = static_cast<uint32_t>(pending_.size());
@@ -191,11 +187,9 @@ void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
 
 void Tracer::TakeComment(const VerifyLine& line, uint32_t section) {
   if (line.role == LineRole::kFence) return;
-  const std::string_view text = line.text;
-  const auto number = static_cast<uint32_t>(line.number);
-  if (const std::optional<bool> begins = BeginsWipe(text)) {
-    TakeWipeMark(*begins, number, section);
-  } else if (const std::optional<PathClass> path_class = ClassOfComment(text)) {
+  if (const std::optional<bool> begins = BeginsWipe(line.text)) {
+    TakeWipeMark(*begins, line.number, section);
+  } else if (const std::optional<PathClass> path_class = ClassOfComment(line.text)) {
     named_ = path_class;
   }
 }
@@ -295,8 +289,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   states_fan_ = false;
   // What is printed between the marks of a wipe is a fault of theirs; one of it is enough.
   if (wiping_ && !printed_) {
-    chunk_.line_faults.push_back(
-        {section, static_cast<uint32_t>(line.number), LineFaultKind::kDeposit});
+    chunk_.line_faults.push_back({section, line.number, LineFaultKind::kDeposit});
   }
   printed_ |= wiping_;
   TraceSegment segment;
@@ -306,7 +299,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.end = PointOf(motion.to, unit);
   printed_mm_ = static_cast<double>(motion.to[2]) * unit;
   extent_.Add(segment.end);
-  segment.line = static_cast<uint32_t>(line.number);
+  segment.line = line.number;
   if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());
     chunk_.arcs.push_back(ArcOf(motion, unit));
@@ -340,8 +333,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
   wiped_ |= wiping_ && move.sideways();
   if (!wiping_ && marks_wipes_ && move.kind == MoveKind::kWipe && motion.number < 10) {
-    chunk_.line_faults.push_back(
-        {section, static_cast<uint32_t>(line.number), LineFaultKind::kUnmarked});
+    chunk_.line_faults.push_back({section, line.number, LineFaultKind::kUnmarked});
   }
   move.acceleration = machine.settings().AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
@@ -355,7 +347,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
   move.filament = machine.inches() ? InMm(motion.filament) : motion.filament;
   move.feed = motion.feed;
-  move.line = static_cast<uint32_t>(line.number);
+  move.line = line.number;
   move.section = section;
   move.open = !motion.was_retracted;
   move.firmware = motion.number == 10 || motion.number == 11;

@@ -42,15 +42,9 @@ std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
   return moves;
 }
 
-bool SamePlace(const TraceMove& a, const TraceMove& b) {
-  return Distance(a.to, b.to) <= kSamePointMm && Distance(a.middle, b.middle) <= kSamePointMm &&
-         std::abs(a.z_to_mm - b.z_to_mm) <= kHeightSlackMm;
-}
-
 bool SameMove(const TraceMove& a, const TraceMove& b) {
-  return a.kind == b.kind && a.firmware == b.firmware && SamePlace(a, b) &&
-         std::abs(a.filament - b.filament) <= VerifyMachine::kSlack && a.feed == b.feed &&
-         a.acceleration == b.acceleration && a.spiral == b.spiral;
+  return AreAlike(a, b) && a.firmware == b.firmware && a.acceleration == b.acceleration &&
+         Distance(a.to, b.to) <= kSamePointMm && Distance(a.middle, b.middle) <= kSamePointMm;
 }
 
 // Of the segments between which `link` stands.

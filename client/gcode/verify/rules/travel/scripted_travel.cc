@@ -7,53 +7,36 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/slacks.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-// One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
-struct TravelStep {
-  MoveKind kind = MoveKind::kTravel;
-  double z_mm = 0;
-  Micro filament = 0;
-  Micro feed = 0;
-  bool open = false;
-  uint64_t acceleration = 0;
-  uint32_t line = 0;
-  uint64_t spiral = 0;  // TraceMove::spiral
+// Alike but for where they lead to, and for their acceleration.
+bool AreLike(const TraceMove& a, const TraceMove& b) { return AreAlike(a, b) && a.open == b.open; }
 
-  bool Like(const TravelStep& other) const {
-    return kind == other.kind && std::abs(z_mm - other.z_mm) <= kHeightSlackMm &&
-           open == other.open && feed == other.feed && spiral == other.spiral &&
-           std::abs(filament - other.filament) <= VerifyMachine::kSlack;
-  }
-};
-
-// What the link to `path` does behind its last unknown line.
-std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path) {
-  std::vector<TravelStep> steps;
-  for (const TraceMove& move : chunk.MovesOf(path, chunk.links[path].fixed)) {
+// What the link to `path` does behind its last unknown line: each step, or several alike as one,
+// with no word of how much filament a wipe pulls.
+std::vector<TraceMove> StepsTo(const TraceChunk& chunk, uint32_t path) {
+  std::vector<TraceMove> steps;
+  for (TraceMove move : chunk.MovesOf(path, chunk.links[path].fixed)) {
     if (move.IsNothing(kLeastMoveMm)) continue;
-    const bool wipes = move.kind == MoveKind::kWipe;
-    const Micro filament = wipes ? 0 : move.filament;
-    const TravelStep step{move.kind, move.z_to_mm,      filament,  move.feed,
-                          move.open, move.acceleration, move.line, move.spiral};
+    if (move.kind == MoveKind::kWipe) move.filament = 0;
     // A travel move may have more bends than before.
-    const bool goes_on =
-        !steps.empty() && steps.back().Like(step) && steps.back().acceleration == step.acceleration;
-    if (move.sideways() && goes_on) continue;
-    steps.push_back(step);
+    const bool goes_on = !steps.empty() && AreLike(steps.back(), move) &&
+                         steps.back().acceleration == move.acceleration;
+    if (!move.sideways() || !goes_on) steps.push_back(move);
   }
   return steps;
 }
 
 // The head sinks from the height of the layer to where a path begins that rises to that, as scarf
 // seams do: that belongs to the path.
-void LeaveOutSinking(const TracePath& path, std::vector<TravelStep>& steps) {
+void LeaveOutSinking(const TracePath& path, std::vector<TraceMove>& steps) {
   const bool sinks = !steps.empty() && steps.back().kind == MoveKind::kDown &&
-                     steps.back().z_mm < path.z_mm - kOneHeightMm;
+                     steps.back().z_to_mm < path.z_mm - kOneHeightMm;
   if (sinks) steps.pop_back();
 }
 
@@ -79,14 +62,14 @@ bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
   return has > had + straight + kLooseMm;
 }
 
-bool IsTravel(const TravelStep& step) { return step.kind == MoveKind::kTravel; }
+bool IsTravel(const TraceMove& step) { return step.kind == MoveKind::kTravel; }
 
-bool Goes(const std::vector<TravelStep>& steps) { return std::ranges::any_of(steps, IsTravel); }
+bool Goes(const std::vector<TraceMove>& steps) { return std::ranges::any_of(steps, IsTravel); }
 
 // Where filament moves alone, its acceleration is that of the path or of the travel.
-bool AreAlikeBehindScripts(const TravelStep& a, const TravelStep& b) {
+bool AreAlikeBehindScripts(const TraceMove& a, const TraceMove& b) {
   const bool still = a.kind == MoveKind::kPriming || a.kind == MoveKind::kRetraction;
-  return a.Like(b) && (still || a.acceleration == b.acceleration);
+  return AreLike(a, b) && (still || a.acceleration == b.acceleration);
 }
 
 // The paths of the original that begin behind unknown lines, and those of the optimised file in
@@ -123,8 +106,8 @@ void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
       findings.breaks.push_back({VerifyRule::kBounds, before, behind,
                                  "the travel behind unknown lines winds to this path"});
     }
-    std::vector<TravelStep> had = StepsTo(layer.was(), was);
-    std::vector<TravelStep> has = StepsTo(layer.is(), is);
+    std::vector<TraceMove> had = StepsTo(layer.was(), was);
+    std::vector<TraceMove> has = StepsTo(layer.is(), is);
     LeaveOutSinking(layer.was().paths[was], had);
     LeaveOutSinking(layer.is().paths[is], has);
     // To a path that begins where the head is, no way leads.
