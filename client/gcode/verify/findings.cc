@@ -46,6 +46,7 @@ void Observations::Append(const Observations& other) {
   departures_outside += other.departures_outside;
   retractions_outside += other.retractions_outside;
   AppendTo(lost_departures, other.lost_departures);
+  poked |= other.poked;
   AppendTo(pokes, other.pokes);
   AppendTo(long_travels, other.long_travels);
   for (size_t kind = 0; kind < kTravelKinds; ++kind) AppendTo(travels[kind], other.travels[kind]);

@@ -180,7 +180,8 @@ struct Observations {
   int64_t departures_outside = 0;        // by such moves from outer walls
   int64_t retractions_outside = 0;       // at the ends of outer walls
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
-  std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
+  bool poked = false;                    // an open move led along a path and back to its end
+  std::vector<Finding> pokes;            // the new ones
   std::array<std::vector<TravelProfile>, kTravelKinds> travels;
   std::vector<Wipe> wipes;
 

@@ -15,11 +15,6 @@ constexpr double kUsualMm = 0.4;     // where no two lie side by side
 constexpr double kTouch = 1.3;       // lines farther apart, in their usual distance, leave a gap
 constexpr double kOnItMm = 0.02;
 
-// Pieces looked at for each of a layer: far more than one that can be printed needs. Of what is
-// left then, nothing may pass anything.
-constexpr size_t kLooks = 100'000;
-constexpr size_t kLooksPerPiece = 1000;
-
 // How far `p` lies beside the piece; a negative number if it lies before its ends, or if the piece
 // does not run along `line`.
 double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
@@ -37,10 +32,7 @@ double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
 class LaidLayer {
  public:
   explicit LaidLayer(const std::vector<LaidPath>& paths)
-      : paths_(paths),
-        tree_(AllOf(paths)),
-        looks_(kLooks + kLooksPerPiece * tree_.pieces().size()),
-        spacing_(UsualSpacing()) {}
+      : paths_(paths), tree_(AllOf(paths)), looks_(tree_.most_looks()), spacing_(UsualSpacing()) {}
 
   // True if most of the path lies over earlier ones.
   bool LiesOver(uint32_t path) {
@@ -168,7 +160,7 @@ class LaidLayer {
 
   const std::vector<LaidPath>& paths_;
   const PieceTree tree_;
-  size_t looks_;
+  size_t looks_;  // left; where none is, nothing may pass anything
   const double spacing_;
 };
 

@@ -24,8 +24,6 @@ constexpr size_t kMostCuts = 4;
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
-bool IsSideways(const TraceMove* move) { return move->sideways(); }
-
 bool IsAtTheSameHeight(const PartStep& a, const PartStep& b) {
   return std::abs(a.above_um - b.above_um) <= kSlackUm ||
          std::abs(a.behind_um - b.behind_um) <= kSlackUm;
@@ -188,7 +186,7 @@ void LinkCutter::AddSpeeds(size_t begin, size_t end, std::vector<LinkPart>& part
 
 void LinkCutter::AddPart(LinkPart::Role role, size_t begin, size_t end,
                          std::vector<LinkPart>& parts) const {
-  LinkPart part{role, {}, std::ranges::none_of(moves_, IsSideways)};
+  LinkPart part{role, {}, std::ranges::none_of(moves_, &TraceMove::sideways)};
   Micro pulled = 0;
   for (size_t i = 0; i < begin; ++i) pulled -= moves_[i]->filament;
   for (size_t i = begin; i < end; ++i) {

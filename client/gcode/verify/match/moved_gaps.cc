@@ -19,9 +19,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Most loops with an equal segment that are examined.
-constexpr int kMostEqual = 16;
-
 // Coordinates in thousandths, and filament in hundred-thousandths, are rounded by less.
 constexpr double kRoundedMm = 0.002;
 constexpr double kRoundedFilamentMm = 2e-5;
@@ -68,7 +65,7 @@ class LoopStarts {
   template <typename IsFound, typename IsIt>
   bool Find(uint64_t digest, IsFound is_found, IsIt is_it) {
     std::list<LoopStart>& starts = starts_[digest];
-    int left = kMostEqual;
+    uint32_t left = kMostEqual;
     for (auto start = starts.begin(); start != starts.end() && left > 0;) {
       if (is_found(start->path)) {
         start = starts.erase(start);

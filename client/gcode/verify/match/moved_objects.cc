@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/types/span.h"
 
 namespace traverse::gcode {
 namespace {
@@ -157,13 +158,6 @@ std::optional<MovedLayer> Match(const Sections& was, const Sections& is, size_t 
   return layer;
 }
 
-bool SameLabels(const Sections& was, const Sections& is, size_t first, size_t end) {
-  for (size_t i = first; i < end; ++i) {
-    if (was.sections[i].under != is.sections[i].under) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::vector<MovedLayer> FindMovedLayers(const Sections& was, const Sections& is, size_t first,
@@ -174,7 +168,10 @@ std::vector<MovedLayer> FindMovedLayers(const Sections& was, const Sections& is,
     size_t last = first;
     while (last < end && !was.sections[last].ends_layer && !is.sections[last].ends_layer) ++last;
     const size_t behind = std::min(last + 1, end);
-    if (!SameLabels(was, is, first, behind)) {
+    const auto of_layer = [first, behind](const Sections& cut) {
+      return absl::MakeConstSpan(cut.sections).subspan(first, behind - first);
+    };
+    if (!std::ranges::equal(of_layer(was), of_layer(is), {}, &Section::under, &Section::under)) {
       if (std::optional<MovedLayer> layer = Match(was, is, first, behind)) {
         layers.push_back(*std::move(layer));
       }

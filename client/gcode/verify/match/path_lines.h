@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "client/gcode/verify/match/layer_pair.h"
@@ -28,22 +29,19 @@ class PathLines {
   // file, or else the last one of all. 0 if there are no paths.
   uint32_t OriginalOf(uint32_t optimised) const {
     if (lines_.empty()) return 0;
-    const auto next = std::ranges::partition_point(
-        lines_, [optimised](const Pair& pair) { return pair.optimised < optimised; });
+    const auto next = std::ranges::lower_bound(lines_, optimised, {}, &Pair::optimised);
     return next == lines_.end() ? lines_.back().original : next->original;
   }
 
   // The other way round. Takes as long as there are paths.
   uint32_t OptimisedOf(uint32_t original) const {
-    const Pair* next = nullptr;
-    const Pair* last = nullptr;
-    for (const Pair& pair : lines_) {
-      if (last == nullptr || pair.original > last->original) last = &pair;
-      if (pair.original < original) continue;
-      if (next == nullptr || pair.original < next->original) next = &pair;
-    }
-    if (next == nullptr) next = last;
-    return next == nullptr ? 0 : next->optimised;
+    if (lines_.empty()) return 0;
+    // The first of those behind it, or the last of those before.
+    const auto place = [original](const Pair& pair) {
+      const bool before = pair.original < original;
+      return std::pair(before, before ? ~pair.original : pair.original);
+    };
+    return std::ranges::min_element(lines_, {}, place)->optimised;
   }
 
  private:

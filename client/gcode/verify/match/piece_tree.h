@@ -24,6 +24,9 @@ class PieceTree {
   const std::vector<Piece>& pieces() const { return pieces_; }
   bool empty() const { return pieces_.empty(); }
 
+  // So many pairs of them are looked at, at most: far more than a layer that can be printed needs.
+  size_t most_looks() const { return 100'000 + 1000 * pieces_.size(); }
+
   // Calls visit(index) for all pieces that come within `reach` of the straight line from `a` to
   // `b`, and for some others; for some more than once. Stops when visit returns false.
   template <typename Visit>

@@ -16,9 +16,6 @@ constexpr uint32_t kNone = UINT32_MAX;
 // The gap of a loop, at most, where lines are not wide.
 constexpr double kUsualGapMm = 0.131;
 
-// Most equal segments that are examined.
-constexpr uint32_t kMostAlike = 16;
-
 // The segments of a section that are not used yet, by their digests; the same digest may be there
 // any number of times.
 class SegmentTable {
@@ -132,7 +129,7 @@ class Matcher {
     uint32_t others = 0;
     table_.ForEachUnused(digest, [&](uint32_t s) {
       if (found == kNone || s == guess_) found = s;
-      return ++others < kMostAlike;
+      return ++others < kMostEqual;
     });
     if (others <= 1) return found;
     uint32_t longest = RunFrom(found, p, at);

@@ -11,6 +11,9 @@
 
 namespace traverse::gcode {
 
+// Of equal segments so many are examined, to find which one was meant.
+inline constexpr uint32_t kMostEqual = 16;
+
 // One path of the original, as it is in the other file.
 struct Visit {
   uint32_t path = 0;      // of the original

@@ -33,8 +33,6 @@ bool EndAlike(const LayerPair& layer, const Visit& visit) {
   return Distance(was, is) < kSamePointMm;
 }
 
-bool IsSideways(const TraceMove& move) { return move.sideways(); }
-
 // Travel leaves the path by a short move that it does not have in the original: another one than
 // there, or, where the path ends elsewhere, one that leads neither along it nor to where that
 // move would be there.
@@ -45,10 +43,10 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
   if (!same_end) {
     if (turned.contains(visit.last_path + 1)) return false;
     const auto along = layer.Side(false).MovesAlong(visit.last_path + 1);
-    return std::ranges::none_of(along, IsSideways);
+    return std::ranges::none_of(along, &TraceMove::sideways);
   }
   const absl::Span<const TraceMove> had = layer.was().MovesOf(visit.path + 1);
-  const auto first = std::ranges::find_if(had, IsSideways);
+  const auto first = std::ranges::find_if(had, &TraceMove::sideways);
   return first == had.end() || Distance(departs->to, first->to) > kSamePointMm;
 }
 
@@ -162,7 +160,7 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   if (Distance(PointAlong(layer.PiecesOf(path), length), first.to) > kOnPathMm) return nullptr;
   // A straight move off a small loop ends there too, but leads across it.
   if (GoesOnMm(layer.Side(true), path + 1) <= length - kOnPathMm) return nullptr;
-  return std::any_of(moves.begin() + 1, moves.end(), IsSideways) ? &first : nullptr;
+  return std::ranges::any_of(moves.subspan(1), &TraceMove::sideways) ? &first : nullptr;
 }
 
 // Travel that goes on along the loop that it leaves does so wherever that ends.

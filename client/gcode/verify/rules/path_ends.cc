@@ -63,20 +63,18 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path) {
 }
 
 // The move with which the open nozzle, having left the end of path `path`, is back there, although
-// nothing begins there; nothing if it does not come back. What is `known` of all moves up to it
-// makes it nothing too.
-template <typename Known>
-const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known& known) {
-  if (chunk.links[path + 1].scripted) return nullptr;
-  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
-  const Point end = chunk.EndOf(chunk.paths[path]);
+// nothing begins there; nothing if it does not come back, or no move up to it counts.
+const TraceMove* PokeBehind(const LayerPair& layer, const LayerSide& side, uint32_t path) {
+  if (side.chunk.links[path + 1].scripted) return nullptr;
+  const absl::Span<const TraceMove> moves = side.chunk.MovesOf(path + 1);
+  const Point end = side.chunk.EndOf(side.chunk.paths[path]);
   bool left = false;
-  bool all_known = true;
+  bool counts = false;
   for (const TraceMove& move : moves.first(moves.size() - (moves.empty() ? 0 : 1))) {
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) return nullptr;
-    all_known &= known(move);
+    counts |= layer.Counts(side, move);
     const double off = Distance(move.to, end);
-    if (left && off <= kSamePointMm) return all_known ? nullptr : &move;
+    if (left && off <= kSamePointMm) return counts ? &move : nullptr;
     left |= off > kOnPathMm;
   }
   return nullptr;
@@ -87,16 +85,10 @@ const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known&
 // along a path's end, where those stand for no travel, and not for less than 0.5 mm at first, for
 // the next path may begin there; and retracted travel that turns back excuses it, but no poke.
 void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
-  if (findings.was.pokes.empty()) {
-    const TraceMove* was =
-        PokeBehind(layer.was(), visit.path, [](const TraceMove&) { return false; });
-    if (was != nullptr) {
-      findings.was.pokes.push_back({VerifyRule::kPathEnds, was->line});
-    }
-  }
+  bool& poked = findings.was.poked;
+  poked = poked || PokeBehind(layer, layer.Side(true), visit.path) != nullptr;
   if (!layer.EndsPath(visit)) return;
-  const TraceMove* is = PokeBehind(layer.is(), visit.last_path,
-                                   [&layer](const TraceMove& m) { return layer.IsKnown(m); });
+  const TraceMove* is = PokeBehind(layer, layer.Side(false), visit.last_path);
   if (is == nullptr) return;
   const TracePath& path = layer.was().paths[visit.path];
   findings.is.pokes.push_back({VerifyRule::kPathEnds,
@@ -148,8 +140,8 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     } else if (has.feed != had.feed) {
       report(had.line, has.line,
              absl::StrFormat("continues along the path at F%g, but at F%g in the original",
-                             static_cast<double>(has.feed) * 1e-6,
-                             static_cast<double>(had.feed) * 1e-6));
+                             static_cast<double>(has.feed) * kMicro,
+                             static_cast<double>(had.feed) * kMicro));
     } else if (!layer.Closed(visit.path) &&
                GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
       report(had.line, has.line, "continues from the path to the other side, unlike the original");
@@ -161,7 +153,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
 
 // What the original does elsewhere too is no break.
 void ComparePokes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  if (was.pokes.empty()) breaks.insert(breaks.end(), is.pokes.begin(), is.pokes.end());
+  if (!was.poked) breaks.insert(breaks.end(), is.pokes.begin(), is.pokes.end());
 }
 
 }  // namespace traverse::gcode

@@ -23,8 +23,6 @@ constexpr double kSlackSeconds = 1e-3;
 
 constexpr double kLeastReachMm = 0.52;
 constexpr double kMostReachMm = 4;
-constexpr uint64_t kLooks = 100'000;  // at pairs of pieces, and for each piece
-constexpr uint64_t kLooksEach = 1'000;
 constexpr double kReachWidths = 1.25;
 
 class IslandFinder {
@@ -61,7 +59,7 @@ class IslandFinder {
   // pieces are looked at.
   void JoinNear() {
     whole_.resize(tree_.node_count());
-    looks_ = kLooks + kLooksEach * tree_.pieces().size();
+    looks_ = tree_.most_looks();
     std::vector<uint32_t> longer(reach_.size());  // paths with more than `k` pieces
     std::iota(longer.begin(), longer.end(), first_);
     for (uint32_t k = 0; !longer.empty(); ++k) {

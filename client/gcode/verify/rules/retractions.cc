@@ -46,7 +46,7 @@ void ComparePrimes(const Observations& was, const Observations& is, std::vector<
   breaks.push_back(
       {VerifyRule::kRetractions, 0, odd.at,
        absl::StrFormat("primes %.4f mm %s than the original, all in all",
-                       static_cast<double>(std::abs(off)) * 1e-6, off > 0 ? "more" : "less")});
+                       static_cast<double>(std::abs(off)) * kMicro, off > 0 ? "more" : "less")});
 }
 
 }  // namespace traverse::gcode

@@ -42,7 +42,7 @@ Key KeyOf(const TraceChunk& chunk, const Standstill& event) {
 // `amount` in 1e-6 mm.
 std::string Pushes(Micro amount) {
   return absl::StrFormat("pushes %.4f mm %s than was retracted",
-                         std::abs(static_cast<double>(amount)) * 1e-6,
+                         std::abs(static_cast<double>(amount)) * kMicro,
                          amount < 0 ? "less" : "more");
 }
 

@@ -92,27 +92,30 @@ float Unevenness(const std::vector<const TraceMove*>& moves, const Wipe& wipe) {
   double most = 0;
   const auto pull = static_cast<double>(wipe.pull());
   for (const TraceMove* move : moves) {
-    pulled -= static_cast<double>(move->filament) * 1e-6;
+    pulled -= static_cast<double>(move->filament) * kMicro;
     length += move->length_mm();
     most = std::max(most, std::abs(pulled - pull * length));
   }
   return static_cast<float>(most);
 }
 
-// The wipe after path `path` of `chunk`, whose pieces are `pieces`.
-Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
-                absl::Span<const Piece> pieces, bool measure) {
+// The wipe after path `path` of `side`, whose pieces are `pieces`. How it follows them is measured
+// only if it is an example for others, or new.
+Wipe WipeBehind(const LayerPair& layer, const LayerSide& side, uint32_t path,
+                absl::Span<const Piece> pieces) {
   Wipe wipe{.at = {0, layer.index()}};
-  const std::vector<const TraceMove*> moves = WipeMoves(layer, chunk, path);
+  const std::vector<const TraceMove*> moves = WipeMoves(layer, side.chunk, path);
+  wipe.known =
+      std::ranges::all_of(moves, [&](const TraceMove* move) { return layer.IsKnown(*move); });
+  const bool measure = side.original || !wipe.known;
   const TraceMove* last = nullptr;
   for (const TraceMove* each : moves) {
     const TraceMove& move = *each;
     const TraceMove* before = std::exchange(last, each);
-    const bool returns = wipe.at.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
+    const bool returns = wipe.at.line == 0 && DepartureOf(side.chunk, path + 1) != nullptr;
     if (wipe.at.line == 0) wipe.at.line = move.line;
-    wipe.known &= layer.IsKnown(move);
     wipe.length_mm += static_cast<float>(move.length_mm());
-    const auto pulled = static_cast<float>(static_cast<double>(-move.filament) * 1e-6);
+    const auto pulled = static_cast<float>(static_cast<double>(-move.filament) * kMicro);
     wipe.pulled_mm += pulled;
     const auto length = static_cast<float>(move.length_mm());
     if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
@@ -211,7 +214,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
   bool any = false;
   for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
     if (layer.Ended()) return;
-    const Wipe wipe = WipeBehind(layer, was, path, layer.PiecesOf(path), true);
+    const Wipe wipe = WipeBehind(layer, layer.Side(true), path, layer.PiecesOf(path));
     wiped.push_back(wipe.at.line);
     if (wipe.at.line == 0) continue;
     any = true;
@@ -225,7 +228,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
     const bool ends = layer.EndsPath(visit);
     Wipe wipe;
     if (ends) {
-      wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
+      wipe = WipeBehind(layer, layer.Side(false), visit.last_path, layer.PiecesOf(visit.path));
     }
     const bool may_lack =
         ends ? MayLackWipe(layer, visit.last_path + 1, wiped.back() != 0, context)
@@ -236,7 +239,6 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
                                  "the wipe after this path is missing"});
     }
     if (wipe.at.line == 0 || wipe.known) continue;
-    wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
     wipe.path_line = was.LineOf(visit.path);
     findings.is.wipes.push_back(wipe);
   }

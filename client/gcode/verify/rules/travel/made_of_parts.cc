@@ -81,7 +81,7 @@ std::string NameOf(const LinkPart& part) {
     const bool standing = step.kind == MoveKind::kRetraction || step.kind == MoveKind::kPriming;
     if (standing && step.filament != 0) {
       absl::StrAppendFormat(&words, " of %.4f mm",
-                            static_cast<double>(std::abs(step.filament)) * 1e-6);
+                            static_cast<double>(std::abs(step.filament)) * kMicro);
     }
   }
   constexpr const char* kRoles[] = {"leaves by", "goes at the speed of", "arrives by"};
