@@ -3,7 +3,7 @@
 
   vary.py FILE... --out=FOLDER [--only=NAME,...]
 
-Every variant prints what its file does. So what `optimize` saves should be much the same, and where a layer is given up
+Every variant prints what its file does, but for a little filament where primes push less or more. So what `optimize` saves should be much the same, and where a layer is given up
 that was not before, a notation or a line is taken for something else than it is.
 """
 
@@ -98,6 +98,14 @@ def e_absolute(lines):
     return recounted("M82", lines, lambda at, value: (at + value, at + value)) if states(lines, "M83") else None
 
 
+def restarts(share):
+    """Primes push so much of what they did: an extra restart distance, below 0 if it is less than 1."""
+    def push(code):
+        prime = re.match(rf"(G1 (?:F{NUMBER} )?E)(\d*\.?\d+)( F{NUMBER})?$", code)
+        return f"{prime[1]}{Decimal(prime[3]) * Decimal(share):f}{prime[4] or ''}" if prime else code
+    return lambda lines: of_code(push)(lines) if states(lines, "M83") else None
+
+
 def inches(lines):
     def word(found):
         return found[1] + f"{(Decimal(found[2]) / INCH).quantize(Decimal('1e-9')).normalize():f}"
@@ -124,6 +132,8 @@ NOTATIONS = {
     "e_relative": e_relative,
     "e_absolute": e_absolute,
     "inches": inches,
+    "restarts_short": restarts("0.8"),
+    "restarts_long": restarts("1.1"),
 }
 
 # What firmware, hosts and people put between layers. E is relative where a line has it.

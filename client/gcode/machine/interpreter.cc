@@ -65,9 +65,6 @@ bool BeyondFilament(Decimal filament) {
   return filament > kMax || filament < -kMax;
 }
 
-// A push that leaves less than one part in this many of what was retracted has primed the nozzle.
-constexpr Decimal kPrimeShare = 30;
-
 // Longer moves with an E word that pushes nothing are travel (KISSlicer, Bambu Studio); shorter
 // ones are printed, and their filament was rounded away.
 constexpr double kMaxRoundedMm = 0.05;
@@ -278,8 +275,10 @@ void Interpreter::FollowM(Step& step) {
 void Interpreter::FollowFilament(Decimal filament, bool still) {
   if (filament < 0) state_.deepest = std::max(state_.deepest, state_.retracted - filament);
   state_.retracted -= filament;
-  // Simplify3D and others push a little less than they retracted where they coast before.
-  if (still && filament > 0 && state_.retracted * kPrimeShare <= state_.deepest) {
+  // With a negative restart distance, or where they coast before, slicers push less than they
+  // retracted. But they also push in parts.
+  if (state_.retracted > 0 && still && filament > 0 && 2 * state_.retracted < state_.deepest &&
+      PrintsNext() && !PullsNext()) {
     state_.retracted = 0;
   }
   if (state_.retracted <= 0) state_.deepest = 0;

@@ -338,12 +338,13 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
   if (pulled_ > 0) line.surplus = 0;  // not all of it yet
 }
 
-// Where slicers coast before a retraction they push a little less than they pulled back.
+// A push may be short of what was pulled back: wherever slicers coast before a retraction, or are
+// told to restart so. What is pushed in parts is not short before the last one.
 void VerifyMachine::FollowFilament(Micro filament, bool moves) {
-  constexpr Micro kPrimeShare = 30;
   if (filament < 0) deepest_ = std::max(deepest_, pulled_ - filament);
   pulled_ = std::max<Micro>(pulled_ - filament, 0);
-  if (!moves && filament > 0 && pulled_ * kPrimeShare <= deepest_) pulled_ = 0;
+  const bool most = pulled_ > 0 && 2 * pulled_ < deepest_;
+  if (most && !moves && filament > 0 && DepositsBehind() && !PullsBehind()) pulled_ = 0;
   if (pulled_ == 0) deepest_ = 0;
 }
 

@@ -76,10 +76,18 @@ TEST(Interpreter, PrimingMoreThanWasPulledBackLeavesNothingRetracted) {
   EXPECT_TRUE(After("M83\nG1 E-.8\nG1 E.83\nG1 E-.02").Retracted());
 }
 
-TEST(Interpreter, APrimeOfALittleLessThanWasPulledBackPrimes) {
-  // Simplify3D after coasting.
-  EXPECT_FALSE(After("M83\nG1 E-6.5\nG1 E6.3").Retracted());
-  EXPECT_TRUE(After("M83\nG1 E-6.5\nG1 E5").Retracted());
+TEST(Interpreter, APrimeOfLessThanWasPulledBackPrimesWhatIsPrintedBehindIt) {
+  // After coasting, and with a negative restart distance.
+  EXPECT_FALSE(After("M83\nG1 E-6.5\nG1 E6.3\nG1 X1 E.1").Retracted());
+  EXPECT_FALSE(After("M83\nG1 E-.5\nG1 E.4\nG92 E0\nG1 F900\nG1 X1 E.1").Retracted());
+  EXPECT_FALSE(After("G1 E-.5\nG1 E-.1\nG92 E0\nG1 X1 E.1").Retracted());
+  EXPECT_TRUE(After("M83\nG1 E-6.5\nG1 E3\nG1 X1 E.1").Retracted());
+  // Filament is unloaded so, and pushed in parts.
+  EXPECT_TRUE(After("M83\nG1 E-6.5\nG1 E6.3\nG1 E-4").Retracted());
+  Interpreter interpreter("M83\nG1 E-1\nG1 E.7\nG1 E.3\nG1 X1 E.1");
+  Step step;
+  for (int i = 0; i < 3; ++i) interpreter.Next(step);
+  EXPECT_TRUE(interpreter.state().Retracted());
 }
 
 TEST(Interpreter, AnotherToolBringsAnotherFilament) {

@@ -16,13 +16,20 @@ bool IsRetractedAfter(const std::string& text) {
   return machine.retracted();
 }
 
-TEST(VerifyMachine, WhatComesBackAllButAThirtiethIsBack) {
+TEST(VerifyMachine, WhatMostlyComesBackRightBeforeADepositIsBack) {
+  const std::string deposit = "G1 X1 E.01\n";
   EXPECT_TRUE(IsRetractedAfter("M83\nG1 E-1 F2100\n"));
   EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E1\n"));
-  EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.97\n"));
-  EXPECT_TRUE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.9\n"));
+  EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.8\n" + deposit));
+  EXPECT_TRUE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.8\n"));
+  EXPECT_TRUE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.4\n" + deposit));
   // In two pulls, the deepest of which counts.
-  EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-.5 F2100\nG1 E-.5\nG1 E.97\n"));
+  EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-.5 F2100\nG1 E-.5\nG1 E.8\n" + deposit));
+}
+
+TEST(VerifyMachine, APushInPartsIsShortOfNothing) {
+  VerifyMachine machine("M83\nG1 E-1 F2100\nG1 E.7\nG1 E.3\nG1 X1 E.01\n");
+  for (VerifyLine line; machine.Next(line);) EXPECT_EQ(line.surplus, 0);
 }
 
 TEST(VerifyMachine, G92SaysWhereTheAxesAreThatItNames) {
