@@ -64,10 +64,19 @@ uint32_t CoastingMoves(const TraceChunk& chunk, uint32_t path, const Piece& last
   return leads_on ? std::min(m, 1u) : m;
 }
 
-bool LiesOn(Point p, absl::Span<const Piece> pieces) {
-  return std::ranges::any_of(pieces, [p](const Piece& piece) {
-    return DistanceToPiece(p, piece.a, piece.b) <= kOnPathMm;
+bool LiesWithin(double mm, Point p, absl::Span<const Piece> pieces) {
+  return std::ranges::any_of(pieces, [p, mm](const Piece& piece) {
+    return DistanceToPiece(p, piece.a, piece.b) <= mm;
   });
+}
+
+// How near to the path a move along it lies: a short one that leads aside is soon as near, and
+// what is no longer than that may be either.
+double BesideMm(const TraceMove& move) {
+  constexpr double kSlope = 0.125;
+  constexpr double kRoundedMm = 0.012;
+  const double length = move.length_mm();
+  return length <= kOnPathMm ? kOnPathMm : std::clamp(kSlope * length, kRoundedMm, kOnPathMm);
 }
 
 // The greatest of `1.5,2,1.5`; 0 if there is no number.
@@ -285,10 +294,11 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
   const Piece last{before, chunk.EndOf(traced), path};
   // Or where the tail went already.
   const auto lies_on = [&](Point p, uint32_t end) {
+    const double mm = any_speed ? kOnPathMm : BesideMm(moves[end]);
     for (const TraceMove& move : moves.first(end)) {
-      if (DistanceToPiece(p, move.from, move.to) <= kOnPathMm) return true;
+      if (DistanceToPiece(p, move.from, move.to) <= mm) return true;
     }
-    return LiesOn(p, pieces);
+    return LiesWithin(mm, p, pieces);
   };
   const uint32_t coasting = any_speed ? 0 : CoastingMoves(chunk, path, last);
   uint32_t m = any_speed ? TailMoves(chunk, path, pieces) : 0;

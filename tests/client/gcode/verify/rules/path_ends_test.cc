@@ -103,6 +103,18 @@ TEST(VerifyPathEnds, AShortSlowMoveToOneSideIsTravel) {
   EXPECT_EQ(Broken(a, type + gap + first + line("X29.5 Y.4", "X29.5 Y9") + apart), "");
 }
 
+// So short a move to the inside is near to the wall: it leaves it, where it retracts. (OrcaSlicer's
+// are a fifth of the nozzle.)
+TEST(VerifyPathEnds, AShortMoveInwardsIsNoTail) {
+  const std::string aside = "G1 X10.077 Y10.021\n";
+  const std::string near = ";TYPE:Internal infill\nG1 X11 Y11 F9000\nG1 F1800\nG1 X19 Y11 E.3\n";
+  const std::string far = Line("Internal infill", "X11 Y15", "X19 Y15");
+  const std::string a = kHead + near + kSquare + aside + far;
+  const std::string b = kHead + kSquare + near + far;
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(With(a, aside, "G1 X10.077 Y10.004\n"), b), "path_ends");
+}
+
 // Where travel is as fast as printing, what lies along a path may be the travel to the next one.
 TEST(VerifyPathEnds, AreNoneWhereTravelIsAsFastAsThePath) {
   const auto line = [](const std::string& from, const std::string& to) {
