@@ -83,7 +83,7 @@ struct Link {
   bool wipes = false;
   bool departs = false;  // steps before the arrival begin with a short move away from the path
 
-  // The height of the arrival, or that of the next path if the arrival is lower.
+  // The height of the arrival; that of the next path if the arrival is not above what was printed.
   Decimal top = 0;
 };
 

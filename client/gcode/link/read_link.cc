@@ -40,7 +40,8 @@ void NoteLift(Link& link) {
   const LinkStep& arrival = link.steps[static_cast<size_t>(link.arrival)];
   const Decimal top = std::max(arrival.from.z, arrival.to.z);
   link.lift = std::max<Decimal>(0, top - std::max(link.z_before, link.z_behind));
-  link.top = std::max(top, link.z_behind);
+  // Slicers that lift by less than a layer travel to the next one below its height.
+  link.top = top > link.z_before ? top : std::max(top, link.z_behind);
   link.sinks = link.lift == 0 && arrival.to.z < arrival.from.z && arrival.to.z == link.z_behind;
   for (size_t i = link.fixed; i <= static_cast<size_t>(link.arrival); ++i) {
     const LinkStep& step = link.steps[i];
