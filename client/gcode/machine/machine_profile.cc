@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "client/gcode/dialects/dialect.h"
 #include "client/gcode/text/cura_settings.h"
@@ -13,20 +12,6 @@ namespace {
 
 // Configurations are some 20 KiB; OrcaSlicer's with its embedded scripts 100 KiB.
 constexpr size_t kScanBytes = size_t{256} << 10;
-
-using SettingLine = std::function<void(std::string_view key, std::string_view value)>;
-
-void ForEachSetting(std::string_view part, const SettingLine& setting) {
-  for (size_t begin = 0; begin < part.size();) {
-    const size_t end = std::min(part.find('\n', begin), part.size());
-    const std::string_view line = part.substr(begin, end - begin);
-    begin = end + 1;
-    if (line.size() < 2 || line[0] != ';') continue;
-    const size_t equals = line.find(" = ");
-    if (equals == std::string_view::npos) continue;
-    setting(TrimBlanks(line.substr(1, equals - 1)), TrimBlanks(line.substr(equals + 3)));
-  }
-}
 
 // The first of the numbers in `9000,1000` or `1.5;2`; nothing if it is none, or not finite.
 std::optional<double> FirstNumber(std::string_view value) {
@@ -93,7 +78,7 @@ void Apply(Setting setting, std::string_view value, MachineProfile& profile) {
       profile.top_fill_pattern = std::string(value);
       return;
     case Setting::kBottomFillPattern:
-      profile.monotonic_bottom = StartsWith(value, "monotonic");
+      profile.monotonic_bottom = value.starts_with("monotonic");
       return;
     case Setting::kNozzleDiameter:
       profile.nozzle_diameter = number;
@@ -106,6 +91,19 @@ void Apply(Setting setting, std::string_view value, MachineProfile& profile) {
       return SetLength(profile.nozzle_height, number);
     case Setting::kFilamentDiameter:
       return SetPositive(profile.filament_diameter, number);
+  }
+}
+
+// The lines `; key = value` of a part of a file.
+void ApplySettings(std::string_view part, MachineProfile& profile) {
+  for (Offset next = 0; next < part.size();) {
+    const Line at = LineAt(part, next);
+    next = at.next;
+    const std::string_view line = at.Text(part);
+    const size_t equals = line.find(" = ");
+    if (!line.starts_with(';') || equals == std::string_view::npos) continue;
+    const auto setting = SettingOf(TrimBlanks(line.substr(1, equals - 1)));
+    if (setting) Apply(*setting, TrimBlanks(line.substr(equals + 3)), profile);
   }
 }
 
@@ -123,7 +121,7 @@ void ApplyCura(const std::string& joined, MachineProfile& profile) {
     if (at == joined.npos) continue;
     const std::string_view rest = std::string_view(joined).substr(at + word.key.size());
     const std::string_view line = rest.substr(0, rest.find('\\'));
-    if (StartsWith(line, " = ")) Apply(word.setting, line.substr(3), profile);
+    if (line.starts_with(" = ")) Apply(word.setting, line.substr(3), profile);
   }
 }
 
@@ -131,12 +129,9 @@ void ApplyCura(const std::string& joined, MachineProfile& profile) {
 
 MachineProfile ReadProfile(std::string_view text) {
   MachineProfile profile;
-  const SettingLine apply = [&profile](std::string_view key, std::string_view value) {
-    if (const std::optional<Setting> setting = SettingOf(key)) Apply(*setting, value, profile);
-  };
-  ForEachSetting(text.substr(0, kScanBytes), apply);
+  ApplySettings(text.substr(0, kScanBytes), profile);
   if (text.size() > kScanBytes) {
-    ForEachSetting(text.substr(std::max(kScanBytes, text.size() - kScanBytes)), apply);
+    ApplySettings(text.substr(std::max(kScanBytes, text.size() - kScanBytes)), profile);
   }
   ApplyCura(JoinedCuraSettings(text), profile);
   return profile;
@@ -161,7 +156,12 @@ void Dynamics::Follow(std::string_view line) {
     return ToDouble(command.Value(letter));
   };
   if (klipper_) {
-    if (command.number == 204) FollowKlipperAccel(value('S'), value('P'), value('T'));
+    if (command.number != 204) return;
+    // It takes S, or the smaller of P and T; it ignores one of these by itself.
+    std::optional<double> accel = value('S');
+    if (!accel && command.Has('P') && command.Has('T')) accel = std::min(value('P'), value('T'));
+    SetPositive(print_accel_, accel);
+    SetPositive(travel_accel_, accel);
   } else if (command.number == 204) {
     SetPositive(print_accel_, value('S'));
     SetPositive(travel_accel_, value('S'));
@@ -177,34 +177,20 @@ void Dynamics::Follow(std::string_view line) {
 }
 
 void Dynamics::FollowFor(Slot slot, std::string_view line) {
+  struct SlotValue {
+    Slot slot;
+    double Dynamics::*value;
+  };
+  static constexpr SlotValue kValues[] = {
+      {kSlotPrintAccel, &Dynamics::print_accel_},     {kSlotTravelAccel, &Dynamics::travel_accel_},
+      {kSlotKlipperAccel, &Dynamics::print_accel_},   {kSlotKlipperAccel, &Dynamics::travel_accel_},
+      {kSlotMaxAccelX, &Dynamics::max_accel_},        {kSlotJerkX, &Dynamics::corner_speed_},
+      {kSlotKlipperCorner, &Dynamics::corner_speed_}, {kSlotKlipperSpeed, &Dynamics::max_speed_},
+      {kSlotKlipperDecel, &Dynamics::cruise_ratio_}};
   Dynamics after = *this;
   after.Follow(line);
-  switch (slot) {
-    case kSlotPrintAccel:
-      print_accel_ = after.print_accel_;
-      break;
-    case kSlotTravelAccel:
-      travel_accel_ = after.travel_accel_;
-      break;
-    case kSlotKlipperAccel:
-      print_accel_ = after.print_accel_;
-      travel_accel_ = after.travel_accel_;
-      break;
-    case kSlotMaxAccelX:
-      max_accel_ = after.max_accel_;
-      break;
-    case kSlotJerkX:
-    case kSlotKlipperCorner:
-      corner_speed_ = after.corner_speed_;
-      break;
-    case kSlotKlipperSpeed:
-      max_speed_ = after.max_speed_;
-      break;
-    case kSlotKlipperDecel:
-      cruise_ratio_ = after.cruise_ratio_;
-      break;
-    default:
-      break;
+  for (const SlotValue& of : kValues) {
+    if (of.slot == slot) this->*of.value = after.*of.value;
   }
 }
 
@@ -217,14 +203,6 @@ void Dynamics::FollowKlipper(std::string_view line) {
   // ACCEL_TO_DECEL said the same to Klipper before 2024, which ignores it since.
   const std::optional<double> ratio = Parameter(line, " MINIMUM_CRUISE_RATIO=");
   if (ratio && *ratio >= 0 && *ratio < 1) cruise_ratio_ = *ratio;
-}
-
-// Klipper takes S, or the smaller of P and T; it ignores one of these by itself.
-void Dynamics::FollowKlipperAccel(std::optional<double> all, std::optional<double> print,
-                                  std::optional<double> travel) {
-  if (!all && print && travel) all = std::min(*print, *travel);
-  SetPositive(print_accel_, all);
-  SetPositive(travel_accel_, all);
 }
 
 Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,

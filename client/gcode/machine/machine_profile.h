@@ -72,8 +72,6 @@ class Dynamics {
  private:
   double Limited(double accel) const { return accel < max_accel_ ? accel : max_accel_; }
   void FollowKlipper(std::string_view line);
-  void FollowKlipperAccel(std::optional<double> all, std::optional<double> print,
-                          std::optional<double> travel);
 
   bool klipper_;
   double print_accel_;

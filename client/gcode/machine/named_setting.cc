@@ -56,9 +56,7 @@ std::optional<std::string> NameOf(const KlipperSetting& setting, std::string_vie
   std::string name(setting.command);
   bool named = setting.name.empty();
   bool sets = false;
-  while (!(parameters = TrimBlanks(parameters)).empty()) {
-    const std::string_view word = parameters.substr(0, parameters.find_first_of(" \t"));
-    parameters.remove_prefix(word.size());
+  for (std::string_view word; !(word = NextWord(parameters)).empty();) {
     const size_t equals = word.find('=');
     if (equals == std::string_view::npos || !Among(setting.parameters, word.substr(0, equals))) {
       return std::nullopt;

@@ -40,11 +40,6 @@ SlotMask FanSlots(Command& command) {
   return SlotBit(static_cast<Slot>(kSlotFan + fan));
 }
 
-SlotMask OnlyWord(Command& command, char letter, Slot slot) {
-  if (!ReadWords(command) || command.words != Command::Bit(letter)) return 0;
-  return SlotBit(slot);
-}
-
 // What a setting of the tool in use, or of the one that the value of `tool` names, sets: the latter
 // holds for itself, too.
 SlotMask OfTool(Command& command, SlotMask slots, char tool) {
@@ -115,7 +110,7 @@ SlotMask CommandSlots(Command& command) {
     case 215:  // Cheetah's
       return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)}, {'Y', SlotBit(kSlotJerkY)}});
     case 220:
-      return OnlyWord(command, 'S', kSlotSpeed);
+      return SlotsOfWords(command, {{'S', SlotBit(kSlotSpeed)}});
     case 221:
       return OfTool(command, SlotsOfWords(command, {{'S', SlotBit(kSlotFlow)}, {'T', 0}}), 'T');
     case 233:  // Repetier's
@@ -139,22 +134,14 @@ SlotMask CommandSlots(Command& command) {
 
 namespace {
 
-// The next of the blank-separated parameters, behind which `rest` goes on; empty at the end.
-std::string_view NextParameter(std::string_view& rest) {
-  rest = TrimBlanks(rest);
-  const std::string_view parameter = rest.substr(0, rest.find_first_of(" \t"));
-  rest.remove_prefix(parameter.size());
-  return parameter;
-}
-
 // Of the extruder in use, or of the one that is named, which holds for itself, too.
 SlotMask PressureSlots(std::string_view rest) {
   SlotMask slots = 0;
   SlotMask of_extruder = 0;
-  for (std::string_view parameter; !(parameter = NextParameter(rest)).empty();) {
-    if (StartsWith(parameter, "SMOOTH_TIME=")) {
+  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
+    if (parameter.starts_with("SMOOTH_TIME=")) {
       slots |= SlotOfName("SMOOTH_TIME", NamedKind::kTool);
-    } else if (StartsWith(parameter, "EXTRUDER=")) {
+    } else if (parameter.starts_with("EXTRUDER=")) {
       of_extruder = SlotOfName(parameter, NamedKind::kTool);
     } else {
       slots |= SlotBit(kSlotPressure);
@@ -165,15 +152,15 @@ SlotMask PressureSlots(std::string_view rest) {
 
 SlotMask LimitSlots(std::string_view rest) {
   SlotMask slots = 0;
-  for (std::string_view parameter; !(parameter = NextParameter(rest)).empty();) {
-    if (StartsWith(parameter, "ACCEL=")) {
+  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
+    if (parameter.starts_with("ACCEL=")) {
       slots |= SlotBit(kSlotKlipperAccel);
-    } else if (StartsWith(parameter, "ACCEL_TO_DECEL=") ||
-               StartsWith(parameter, "MINIMUM_CRUISE_RATIO=")) {
+    } else if (parameter.starts_with("ACCEL_TO_DECEL=") ||
+               parameter.starts_with("MINIMUM_CRUISE_RATIO=")) {
       slots |= SlotBit(kSlotKlipperDecel);
-    } else if (StartsWith(parameter, "SQUARE_CORNER_VELOCITY=")) {
+    } else if (parameter.starts_with("SQUARE_CORNER_VELOCITY=")) {
       slots |= SlotBit(kSlotKlipperCorner);
-    } else if (StartsWith(parameter, "VELOCITY=")) {
+    } else if (parameter.starts_with("VELOCITY=")) {
       slots |= SlotBit(kSlotKlipperSpeed);
     } else {
       return 0;
@@ -187,7 +174,7 @@ SlotMask LimitSlots(std::string_view rest) {
 SlotMask TextSlots(std::string_view line) {
   const size_t end = std::min(line.find_first_of(" \t;"), line.size());
   const std::string_view command = line.substr(0, end);
-  if (!StartsWith(command, "SET_")) return 0;
+  if (!command.starts_with("SET_")) return 0;
   const std::string_view parameters = line.substr(end, std::min(line.find(';'), line.size()) - end);
   if (command == "SET_PRESSURE_ADVANCE") return PressureSlots(parameters);
   if (command == "SET_VELOCITY_LIMIT") return LimitSlots(parameters);

@@ -71,22 +71,17 @@ static_assert(kSlotCount < 64);
 
 constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
 
-inline constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
+// From `first` to the one before `end`.
+constexpr SlotMask SlotsUpTo(Slot first, Slot end) { return SlotBit(end) - SlotBit(first); }
+
+inline constexpr SlotMask kAllSlots = SlotsUpTo(kSlotType, kSlotCount);
 
 // The slots for how the machine moves, not what it deposits. They may differ between the travel to
 // a path and the path.
-inline constexpr SlotMask kDynamicsSlots =
-    SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel) | SlotBit(kSlotRetractAccel) |
-    SlotBit(kSlotJerkX) | SlotBit(kSlotJerkY) | SlotBit(kSlotMaxAccelX) | SlotBit(kSlotMaxAccelY) |
-    SlotBit(kSlotMaxTravelX) | SlotBit(kSlotMaxTravelY) | SlotBit(kSlotMaxAccelZ) |
-    SlotBit(kSlotMaxAccelE) | SlotBit(kSlotMaxSpeedX) | SlotBit(kSlotMaxSpeedY) |
-    SlotBit(kSlotMaxSpeedZ) | SlotBit(kSlotMaxSpeedE) | SlotBit(kSlotJerkZ) | SlotBit(kSlotJerkE) |
-    SlotBit(kSlotJunction) | SlotBit(kSlotKlipperAccel) | SlotBit(kSlotKlipperDecel) |
-    SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed) | SlotBit(kSlotSpeed);
+inline constexpr SlotMask kDynamicsSlots = SlotsUpTo(kSlotPrintAccel, kSlotPressure);
 
-inline constexpr SlotMask kFanSlots = SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) |
-                                      SlotBit(kSlotFan3) |
-                                      (SlotBit(kSlotNamedTool) - SlotBit(kSlotNamedFan));
+inline constexpr SlotMask kFanSlots =
+    SlotsUpTo(kSlotFan, kSlotPrintAccel) | SlotsUpTo(kSlotNamedFan, kSlotNamedTool);
 
 // The slots that a line sets; 0 if it is not a setter. Reads the words of commands that may be one.
 SlotMask CommentSlots(std::string_view comment);

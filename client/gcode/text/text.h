@@ -28,6 +28,14 @@ inline std::string_view TrimBlanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
+// The next of the blank-separated words, behind which `rest` goes on; empty at the end.
+inline std::string_view NextWord(std::string_view& rest) {
+  rest = TrimBlanks(rest);
+  const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+  rest.remove_prefix(word.size());
+  return word;
+}
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_
