@@ -253,7 +253,7 @@ std::string Counted(int64_t count, const char* what) {
 // "is alone" of "are alone", and so on.
 std::string OfOne(std::string_view holds) {
   constexpr std::string_view kAre = "are ";
-  if (StartsWith(holds, kAre)) return absl::StrCat("is ", std::string(holds.substr(kAre.size())));
+  if (holds.starts_with(kAre)) return absl::StrCat("is ", std::string(holds.substr(kAre.size())));
   const size_t verb = holds.find(' ');
   return absl::StrCat(std::string(holds.substr(0, verb)), "s", std::string(holds.substr(verb)));
 }

@@ -44,7 +44,7 @@ double Percent(double before, double after) {
 // picture that something else stands in. The mark of UTF-8 stays in front of whatever it stands in
 // front of.
 Offset EndOfHead(std::string_view text) {
-  Offset end = StartsWith(text, kUtf8Mark) ? LineAt(text, 0).next : 0;
+  Offset end = text.starts_with(kUtf8Mark) ? LineAt(text, 0).next : 0;
   std::optional<Offset> picture;
   for (Offset next = end; next < text.size();) {
     const Line line = LineAt(text, next);
@@ -52,7 +52,7 @@ Offset EndOfHead(std::string_view text) {
     const std::string_view content = TrimBlanks(line.Text(text));
     if (content.empty()) continue;
     if (content[0] != ';') break;
-    if (StartsWith(content, "; thumbnail")) {
+    if (content.starts_with("; thumbnail")) {
       picture.reset();
       if (content.find(" begin") != std::string_view::npos) picture = line.begin;
     }

@@ -35,14 +35,14 @@ Label MarlinLabel(std::string_view line) {
   if (!rest.empty() && IsDigit(rest[0])) return {};
   const std::string_view words = TrimBlanks(rest);
   if (!StartsWithInAnyCase(words, "S")) return {LabelKind::kSays, kM486, false};
-  const bool ends = StartsWith(TrimBlanks(words.substr(1)), "-");
+  const bool ends = TrimBlanks(words.substr(1)).starts_with("-");
   return {ends ? LabelKind::kEnds : LabelKind::kBegins, kM486, !ends};
 }
 
 }  // namespace
 
 Label LabelOf(std::string_view line) {
-  if (StartsWith(line, "@")) return HostLabel(line);
+  if (line.starts_with("@")) return HostLabel(line);
   if (StartsWithInAnyCase(line, "M486")) return MarlinLabel(line);
   const Mark* mark = MarkOf(line);
   if (mark == nullptr) return {};

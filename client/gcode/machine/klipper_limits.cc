@@ -113,7 +113,7 @@ class KlipperReader {
     has_printer_ = has_printer_ || section_ == "printer";
     retracts_ = retracts_ || section_ == "firmware_retraction";
     constexpr std::string_view kInclude = "include ";
-    if (!StartsWith(section_, kInclude)) return absl::OkStatus();
+    if (!section_.starts_with(kInclude)) return absl::OkStatus();
     return Include(std::string(TrimBlanks(section_.substr(kInclude.size()))), number);
   }
 

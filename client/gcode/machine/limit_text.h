@@ -11,7 +11,6 @@
 #include "absl/status/status.h"
 #include "client/gcode/machine/machine_limits.h"
 #include "client/gcode/text/lexer.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 

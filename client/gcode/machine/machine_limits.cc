@@ -97,14 +97,14 @@ class MarlinReader {
   static std::string_view WithoutMarks(std::string_view line, bool& said) {
     line = TrimBlanks(line);
     for (const std::string_view mark : {"Recv:", "<<<", "<", "Send:", "SENDING:", ">>>", ">"}) {
-      if (StartsWith(line, mark)) {
+      if (line.starts_with(mark)) {
         line = TrimBlanks(line.substr(mark.size()));
         break;
       }
     }
     constexpr std::string_view kEcho = "echo:";
-    said = StartsWith(line, kEcho) || line == "ok" || line == "wait" || line == "start";
-    return StartsWith(line, kEcho) ? TrimBlanks(line.substr(kEcho.size())) : line;
+    said = line.starts_with(kEcho) || line == "ok" || line == "wait" || line == "start";
+    return line.starts_with(kEcho) ? TrimBlanks(line.substr(kEcho.size())) : line;
   }
 
   absl::Status Follow(const Command& command, int number) {
@@ -136,7 +136,7 @@ class MarlinReader {
 bool LooksLikeKlipper(std::string_view text) {
   bool found = false;
   const absl::Status all = ForEachLine(text, [&found](std::string_view line, int) {
-    found = found || StartsWith(line, "[");
+    found = found || line.starts_with("[");
     return absl::OkStatus();
   });
   return all.ok() && found;

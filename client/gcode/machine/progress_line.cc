@@ -39,8 +39,8 @@ bool HasShare(std::string_view words) {
   for (size_t at = words.find_first_of("0123456789"); at < words.size(); ++at) {
     if (!IsDigit(words[at]) || IsDigit(words[at + 1])) continue;
     std::string_view rest = Behind(words, at + 1);
-    if (StartsWith(rest, "%")) return true;
-    const size_t joint = StartsWith(rest, "/") ? 1 : StartsWith(rest, "of ") ? 3 : 0;
+    if (rest.starts_with("%")) return true;
+    const size_t joint = rest.starts_with("/") ? 1 : rest.starts_with("of ") ? 3 : 0;
     rest = joint > 0 ? Behind(rest, joint) : std::string_view();
     if (!rest.empty() && IsDigit(rest[0])) return true;
   }

@@ -6,7 +6,6 @@
 
 #include "absl/types/span.h"
 #include "client/gcode/plan/loop_starts.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -73,7 +72,7 @@ bool PathRules::OrderIsQuality(Feature feature) const {
   if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
   if (feature != Feature::kTopInfill) return false;
   const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;
-  return !pattern || StartsWith(*pattern, "monotonic");
+  return !pattern || pattern->starts_with("monotonic");
 }
 
 bool PathRules::MayBeginAnywhere(size_t path) const {

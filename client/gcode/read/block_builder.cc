@@ -48,7 +48,7 @@ bool IsLostMove(const Step& step, const MachineState& after, std::string_view te
     return number > 3 || !after.relative_xyz;
   }
   const std::string_view line = TrimBlanks(step.line.Text(text));
-  return StartsWith(line, "G") || StartsWith(line, "g") || StartsWith(line, "N");
+  return line.starts_with("G") || line.starts_with("g") || line.starts_with("N");
 }
 
 // Without waiting for it; what waits is not known.

@@ -24,7 +24,7 @@ bool HasCommand(std::string_view value, std::string_view command) {
 }
 
 bool IsOfStartOrEnd(std::string_view setting) {
-  return setting == "start_gcode" || setting == "end_gcode" || StartsWith(setting, "machine_");
+  return setting == "start_gcode" || setting == "end_gcode" || setting.starts_with("machine_");
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::optional<std::vector<std::string_view>> SettingsThatAdd(std::string_view te
     const Line line = LineAt(text, next);
     next = line.next;
     const std::string_view comment = line.Text(text);
-    if (!StartsWith(comment, ";")) continue;
+    if (!comment.starts_with(";")) continue;
     const size_t at = comment.find(kEnd);
     if (at == comment.npos) continue;
     const std::string_view name = TrimBlanks(comment.substr(1, at + kEnd.find(' ') - 1));

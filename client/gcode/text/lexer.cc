@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "client/gcode/text/digits.h"
+#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 constexpr int kMaxCommandNumber = 99999;
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
-char Capital(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool IsLetter(char c) { return c >= 'A' && c <= 'Z'; }
 
 bool IsNumberPart(char c) { return IsDigit(c) || c == '.' || c == '-' || c == '+'; }

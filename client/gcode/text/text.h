@@ -8,18 +8,13 @@
 
 namespace traverse::gcode {
 
-inline bool StartsWith(std::string_view text, std::string_view prefix) {
-  return text.substr(0, prefix.size()) == prefix;
-}
+// Of letters of ASCII; others stay.
+inline char Capital(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-// Letters of ASCII.
 inline bool StartsWithInAnyCase(std::string_view text, std::string_view prefix) {
-  const auto capital = [](char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  };
   return text.size() >= prefix.size() &&
          std::equal(prefix.begin(), prefix.end(), text.begin(),
-                    [capital](char x, char y) { return capital(x) == capital(y); });
+                    [](char x, char y) { return Capital(x) == Capital(y); });
 }
 
 inline std::string_view TrimBlanks(std::string_view text) {
