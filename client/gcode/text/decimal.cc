@@ -4,75 +4,30 @@
 #include <cstddef>
 
 namespace traverse::gcode {
-namespace {
-
-constexpr Decimal kPowers[kDecimalDigits + 1] = {
-    1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
-
-// A number of any length from its first digit or point on; see ParseDecimal.
-std::optional<Decimal> ParseLong(const char** text, const char* end) {
-  const char* p = *text;
-  const char* const first = p;
-  Decimal whole = 0;
-  for (; p < end && IsDigit(*p); ++p) {
-    whole = whole * 10 + (*p - '0');
-    if (whole > kDecimalMax / kDecimalOne) return std::nullopt;
-  }
-  int digits = static_cast<int>(p - first);
-  Decimal fraction = 0;
-  if (p < end && *p == '.') {
-    const char* const point = p++;
-    int decimals = 0;
-    for (; p < end && IsDigit(*p); ++p) {
-      if (decimals == kDecimalDigits) continue;
-      fraction = fraction * 10 + (*p - '0');
-      ++decimals;
-    }
-    fraction *= kPowers[kDecimalDigits - decimals];
-    digits += static_cast<int>(p - point) - 1;
-  }
-  if (digits == 0) return std::nullopt;
-  *text = p;
-  return whole * kDecimalOne + fraction;
-}
-
-}  // namespace
 
 std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
   const char* p = *text;
   bool negative = false;
   if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
-  const char* const first = p;
-  // Numbers of at most nine digits on either side of the point fit as they come.
-  constexpr int kMostDigits = 9;
-  uint64_t value = 0;
-  for (; p < end && IsDigit(*p) && p - first <= kMostDigits; ++p) {
-    value = value * 10 + static_cast<uint64_t>(*p - '0');
+  bool any = false;
+  Decimal value = 0;
+  for (; p < end && IsDigit(*p); ++p) {
+    any = true;
+    value = value * 10 + (*p - '0');
+    if (value > kDecimalMax / kDecimalOne) return std::nullopt;
   }
-  int digits = static_cast<int>(p - first);
-  bool is_long = digits > kMostDigits;
-  int decimals = 0;
+  value *= kDecimalOne;
   if (p < end && *p == '.') {
-    const char* const behind_point = ++p;
-    for (; p < end && IsDigit(*p) && p - behind_point <= kMostDigits; ++p) {
-      value = value * 10 + static_cast<uint64_t>(*p - '0');
+    ++p;
+    // Behind nine decimals nothing is left of the unit.
+    for (Decimal unit = kDecimalOne / 10; p < end && IsDigit(*p); ++p, unit /= 10) {
+      any = true;
+      value += (*p - '0') * unit;
     }
-    decimals = static_cast<int>(p - behind_point);
-    is_long = is_long || decimals > kMostDigits;
-    digits += decimals;
   }
-  if (digits == 0) return std::nullopt;
-  Decimal read = 0;
-  if (is_long) {
-    p = first;
-    const std::optional<Decimal> long_number = ParseLong(&p, end);
-    if (!long_number) return std::nullopt;
-    read = *long_number;
-  } else {
-    read = static_cast<Decimal>(value) * kPowers[kDecimalDigits - decimals];
-  }
+  if (!any) return std::nullopt;
   *text = p;
-  return negative ? -read : read;
+  return negative ? -value : value;
 }
 
 void AppendDecimal(Decimal value, NumberStyle style, std::string& out) {
@@ -89,7 +44,7 @@ void AppendDecimal(Decimal value, NumberStyle style, std::string& out) {
   if (digit == buffer_end && (style.leading_zero || fraction == 0)) *--digit = '0';
   out.append(digit, static_cast<size_t>(buffer_end - digit));
 
-  int decimals = kDecimalDigits;
+  int decimals = 9;
   while (decimals > 0 && fraction % 10 == 0) {
     fraction /= 10;
     --decimals;

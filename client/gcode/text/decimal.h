@@ -18,7 +18,6 @@ namespace traverse::gcode {
 // A number in units of 1e-9.
 using Decimal = int64_t;
 
-inline constexpr int kDecimalDigits = 9;
 inline constexpr Decimal kDecimalOne = 1'000'000'000;
 
 // Larger numbers are refused, so that sums and differences of a few cannot overflow.
@@ -29,8 +28,8 @@ inline bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9; }
 
 // Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text`, and moves
-// `*text` past it. Decimals beyond nine are cut off. Unset if there is no number, or if it is beyond
-// kDecimalMax.
+// `*text` past it. Decimals beyond nine are cut off. Unset if there is no number, or if it is
+// beyond kDecimalMax.
 std::optional<Decimal> ParseDecimal(const char** text, const char* end);
 
 // How a file writes its numbers.
