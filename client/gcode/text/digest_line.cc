@@ -1,19 +1,17 @@
 #include "client/gcode/text/digest_line.h"
 
-#include <algorithm>
 #include <cassert>
 #include <optional>
 
 #include "client/files/md5.h"
+#include "client/gcode/text/lexer.h"
 
 namespace traverse::gcode {
 namespace {
 
 constexpr std::string_view kMark = "; MD5:";
 
-std::string_view FirstLine(std::string_view text) {
-  return text.substr(0, std::min(text.find('\n'), text.size() - 1) + 1);
-}
+std::string_view FirstLine(std::string_view text) { return LineAt(text, 0).Raw(text); }
 
 }  // namespace
 

@@ -29,8 +29,7 @@ bool IsCommand(std::string_view line) {
 
 // Where the blanks and the comment at the end of `line` begin.
 size_t EndOfCode(std::string_view line) {
-  const size_t last = line.substr(0, line.find(';')).find_last_not_of(" \t");
-  return last == std::string_view::npos ? 0 : last + 1;
+  return line.substr(0, line.find(';')).find_last_not_of(" \t") + 1;
 }
 
 // The position of the checksum that ends at `end`; npos if there is none.
@@ -66,15 +65,22 @@ NumberedLine TakeApart(std::string_view line) {
   return parts;
 }
 
-// Calls visit(line, whether it is a command to be numbered) for each line of `text`.
-template <typename Visit>
-void ForEachLine(std::string_view text, const LineNumbers& numbers, Visit visit) {
+// Appends `text` to `out`, but for its commands that are to be numbered: of each of these
+// append(line without its end) what is to stand there.
+template <typename Append>
+void AppendLines(std::string_view text, const LineNumbers& numbers, std::string& out,
+                 Append append) {
   size_t commands = 0;
   for (Offset next = 0; next < text.size();) {
     const Line line = LineAt(text, next);
     next = line.next;
-    const bool command = IsCommand(line.Text(text));
-    visit(line, command && commands++ >= numbers.commands_before);
+    const std::string_view content = line.Text(text);
+    if (IsCommand(content) && commands++ >= numbers.commands_before) {
+      append(content);
+      out.append(text.substr(line.end, line.next - line.end));
+    } else {
+      out.append(line.Raw(text));
+    }
   }
 }
 
@@ -125,12 +131,7 @@ std::optional<LineNumbers> LearnLineNumbers(std::string_view text) {
 std::string WithoutLineNumbers(std::string_view text, const LineNumbers& numbers) {
   std::string out;
   out.reserve(text.size());
-  ForEachLine(text, numbers, [&](const Line& line, bool numbered) {
-    const std::string_view content = line.Text(text);
-    if (!numbered) {
-      out.append(line.Raw(text));
-      return;
-    }
+  AppendLines(text, numbers, out, [&](std::string_view content) {
     const NumberedLine parts = TakeApart(content);
     if (numbers.checksums && parts.checksum) {
       out.append(parts.command);
@@ -138,7 +139,6 @@ std::string WithoutLineNumbers(std::string_view text, const LineNumbers& numbers
     } else {  // what looks like a checksum is part of the command
       out.append(content.substr(static_cast<size_t>(parts.command.data() - content.data())));
     }
-    out.append(text.substr(line.end, line.next - line.end));
   });
   return out;
 }
@@ -148,13 +148,8 @@ std::string WithLineNumbers(std::string_view text, const LineNumbers& numbers) {
   std::string out;
   out.reserve(text.size() + text.size() / 3 + kBytesPerLine);
   int64_t number = numbers.first;
-  ForEachLine(text, numbers, [&](const Line& line, bool numbered) {
-    if (!numbered) {
-      out.append(line.Raw(text));
-      return;
-    }
+  AppendLines(text, numbers, out, [&](std::string_view content) {
     const size_t begin = out.size();
-    const std::string_view content = line.Text(text);
     const size_t end = numbers.behind_comments ? content.size() : EndOfCode(content);
     absl::StrAppend(&out, "N", number, numbers.blanks);
     out.append(content.substr(0, end));
@@ -166,7 +161,6 @@ std::string WithLineNumbers(std::string_view text, const LineNumbers& numbers) {
       absl::StrAppend(&out, "*", static_cast<int>(sum));
     }
     out.append(content.substr(end));
-    out.append(text.substr(line.end, line.next - line.end));
   });
   return out;
 }
@@ -177,8 +171,7 @@ std::optional<Offset> FirstOtherLine(std::string_view text, std::string_view oth
   // The last line shows what follows the end of `text`.
   size_t place = static_cast<size_t>(at - text.begin());
   if (place == text.size() && place > 0) --place;
-  const size_t before = place == 0 ? std::string_view::npos : text.rfind('\n', place - 1);
-  return static_cast<Offset>(before == std::string_view::npos ? 0 : before + 1);
+  return static_cast<Offset>(text.substr(0, place).rfind('\n') + 1);
 }
 
 }  // namespace traverse::gcode
