@@ -39,18 +39,14 @@ double StopToStopSeconds(double length, double speed, double accel) {
   return TrapezoidSeconds(length, Speed(0), Speed(0), speed * speed, accel);
 }
 
-double CornerSpeed2(double cosine, double corner) {
-  // 2 sin(t / 2) squared is 2 - 2 cos t.
-  const double turn2 = std::max(2 - 2 * cosine, 1e-9);
-  return 2 * corner * corner / turn2;
-}
-
 void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner) {
   if (rules_.klipper) {
-    MoveInSpace move{.dx = dx, .dy = dy, .speed = speed, .accel = accel};
-    move.machine_accel = accel;
-    move.corner = corner;
-    return Move(move);
+    return Move({.dx = dx,
+                 .dy = dy,
+                 .speed = speed,
+                 .accel = accel,
+                 .machine_accel = accel,
+                 .corner = corner});
   }
   const double length = std::sqrt(dx * dx + dy * dy);
   if (!(length > 0)) return;
@@ -72,22 +68,19 @@ void MotionPlanner::Move(const MoveInSpace& move) {
       (std::numbers::sqrt2 - 1) * move.corner * move.corner * move.accel / move.machine_accel;
   const double limit2 = queue_.empty() ? 0 : KlipperLimit2(along, segment, move.filament);
   last_filament_ = move.filament;
-  Segment& queued = Queue(length, segment.speed2, segment.accel, limit2, along);
-  queued.slow_gain2 = segment.slow_gain2;
-  queued.missing2 = segment.missing2;
-  PlanIfFull();
+  Queue(length, segment.speed2, segment.accel, limit2, along, segment.slow_gain2, segment.missing2);
 }
 
 void MotionPlanner::Arc(double length_mm, double bx, double by, double ex, double ey, double speed,
                         double accel, double corner) {
   if (!(length_mm > 0) || !(speed > 0)) return;
-  const double limit2 = queue_.empty() ? 0 : CornerLimit2(bx, by, corner);
-  Queue(length_mm, speed * speed, accel, limit2, {ex, ey});
-  PlanIfFull();
+  // 2 sin(t / 2) squared is 2 - 2 cos t.
+  const double turn2 = std::max(2 - 2 * (last_.x * bx + last_.y * by), 1e-9);
+  Queue(length_mm, speed * speed, accel, 2 * corner * corner / turn2, {ex, ey});
 }
 
-MotionPlanner::Segment& MotionPlanner::Queue(double length, double speed2, double accel,
-                                             double limit2, const Direction& end) {
+void MotionPlanner::Queue(double length, double speed2, double accel, double limit2,
+                          const Direction& end, double slow_gain2, double missing2) {
   limit2 = queue_.empty() ? 0 : std::min({limit2, speed2, queue_.back().speed2});
   // Filled where it is: a copy would have to wait until its parts are written.
   Segment& segment = queue_.emplace_back();
@@ -95,16 +88,10 @@ MotionPlanner::Segment& MotionPlanner::Queue(double length, double speed2, doubl
   segment.speed2 = speed2;
   segment.accel = accel;
   segment.limit2 = segment.entry2 = limit2;
+  segment.slow_gain2 = slow_gain2;
+  segment.missing2 = missing2;
   last_ = end;
-  return segment;
-}
-
-void MotionPlanner::PlanIfFull() {
-  if (queue_.size() >= kWindow) Plan(0, kWindow / 2);
-}
-
-double MotionPlanner::CornerLimit2(double bx, double by, double corner) const {
-  return CornerSpeed2(last_.x * bx + last_.y * by, corner);
+  if (queue_.size() >= kWindow) Plan(kWindow / 2);
 }
 
 double MotionPlanner::KlipperLimit2(const Direction& begin, const Segment& next,
@@ -130,7 +117,7 @@ double MotionPlanner::KlipperLimit2(const Direction& begin, const Segment& next,
 }
 
 void MotionPlanner::Stop(double seconds) {
-  if (!queue_.empty()) Plan(0, queue_.size());
+  if (!queue_.empty()) Plan(queue_.size());
   entry2_ = 0;
   seconds_ += seconds;
 }
@@ -164,13 +151,9 @@ void MotionPlanner::FindPeaks() {
   }
 }
 
-double MotionPlanner::Speed2(size_t i) const {
-  return rules_.klipper ? std::min(queue_[i].speed2, peaks2_[i]) : queue_[i].speed2;
-}
-
-void MotionPlanner::Plan(double exit2, size_t count) {
+void MotionPlanner::Plan(size_t count) {
   if (rules_.klipper) FindPeaks();
-  double next2 = exit2;
+  double next2 = 0;
   for (size_t i = queue_.size(); i-- > 0;) {
     Segment& segment = queue_[i];
     segment.entry2 = std::min(segment.limit2, next2 + 2 * segment.accel * segment.length);
@@ -182,10 +165,11 @@ void MotionPlanner::Plan(double exit2, size_t count) {
   Speed entry(entry2_);
   for (size_t i = 0; i < count; ++i) {
     const Segment& segment = queue_[i];
-    const double limit2 = i + 1 < queue_.size() ? queue_[i + 1].entry2 : exit2;
+    const double limit2 = i + 1 < queue_.size() ? queue_[i + 1].entry2 : 0;
     const Speed leave(std::min(limit2, entry.value2 + 2 * segment.accel * segment.length));
+    const double most2 = rules_.klipper ? std::min(segment.speed2, peaks2_[i]) : segment.speed2;
     // What was planned before more was known may be a little faster.
-    const double speed2 = std::max({Speed2(i), entry.value2, leave.value2});
+    const double speed2 = std::max({most2, entry.value2, leave.value2});
     seconds_ += TrapezoidSeconds(segment.length, entry, leave, speed2, segment.accel);
     entry = leave;
   }

@@ -29,10 +29,6 @@ namespace traverse::gcode {
 // filament; above 0).
 double StopToStopSeconds(double length, double speed, double accel);
 
-// The square of the speed at which a corner is taken: `cosine` is that of the angle between the
-// directions before and behind it, `corner` the speed at a right angle.
-double CornerSpeed2(double cosine, double corner);
-
 // How a machine goes around corners.
 struct PlannerRules {
   bool klipper = false;
@@ -99,21 +95,18 @@ class MotionPlanner {
     double missing2 = 0;
   };
 
-  // The corner between the last queued move and one that begins in direction (bx, by) or `begin`.
-  double CornerLimit2(double bx, double by, double corner) const;
+  // The corner between the last queued move and one that begins in direction `begin`.
   double KlipperLimit2(const Direction& begin, const Segment& next, double filament) const;
 
   // Queues a move that ends in direction `end`, behind a corner taken at the root of `limit2`.
-  Segment& Queue(double length, double speed2, double accel, double limit2, const Direction& end);
-  void PlanIfFull();
+  void Queue(double length, double speed2, double accel, double limit2, const Direction& end,
+             double slow_gain2 = 0, double missing2 = 0);
 
   // Fills slow2_ and peaks2_, so that each way up to a speed and down again has its cruise.
   void FindPeaks();
-  double Speed2(size_t i) const;
 
-  // Plans what is queued, with speed `exit2` after the last segment, and takes `count` segments
-  // out.
-  void Plan(double exit2, size_t count);
+  // Plans what is queued, up to a standstill, and takes `count` segments out.
+  void Plan(size_t count);
 
   static constexpr size_t kWindow = 512;
 
