@@ -11,8 +11,7 @@ namespace {
 
 // What a step of an arrival does to Z and filament.
 bool Arrives(StepKind kind) {
-  return kind == StepKind::kLift || kind == StepKind::kFilament || kind == StepKind::kDwell ||
-         kind == StepKind::kFirmwareRetract || kind == StepKind::kFirmwareUnretract;
+  return kind == StepKind::kLift || kind == StepKind::kDwell || MovesFilament(kind);
 }
 
 }  // namespace

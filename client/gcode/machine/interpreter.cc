@@ -107,8 +107,7 @@ bool Interpreter::Next(Step& step) {
     case LineKind::kCommand:
       FollowCommand(step);
       if (step.kind == StepKind::kDwell) break;
-      behind_pull_ = step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
-                     step.kind == StepKind::kFirmwareUnretract;
+      behind_pull_ = MovesFilament(step.kind);
       break;
   }
   if (step.kind == StepKind::kExtrude) {
@@ -399,12 +398,9 @@ bool Interpreter::PrintsNext() const {
   for (int i = 0; i < kMostAhead; ++i) {
     // The text of a link ends where its path begins.
     if (!LexCommandAhead(next, command)) return true;
-    const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
-                       command.number >= 0 && command.number <= 3;
-    const bool sets = command.Is('G', 92);
-    if (!moves && !sets) continue;
+    if (!command.Moves() && !command.Is('G', 92)) continue;
     const bool filament = command.Has('E');
-    if (moves && (command.words & kOfXy) != 0) {
+    if (command.Moves() && (command.words & kOfXy) != 0) {
       if (filament && command.Value('E') > (state_.RelativeE() ? 0 : e)) return true;
       follow('X', at.x);
       follow('Y', at.y);

@@ -93,6 +93,12 @@ inline bool IsXyMotion(StepKind kind) {
          kind == StepKind::kTravel || kind == StepKind::kWipe;
 }
 
+// Filament alone.
+inline bool MovesFilament(StepKind kind) {
+  return kind == StepKind::kFilament || kind == StepKind::kFirmwareRetract ||
+         kind == StepKind::kFirmwareUnretract;
+}
+
 // The effect of one line.
 struct Step {
   Line line;

@@ -32,10 +32,8 @@ double LengthMm(const Step& step, const MachineState& state) {
 double NominalSeconds(const Step& step, const MachineState& state) {
   const Command& command = step.command;
   if (command.Is('G', 4)) return DwellSeconds(step);
-  const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
-                     command.number >= 0 && command.number <= 3;
   const double mm_s = ToDouble(state.feed) / 60 * state.UnitMm();
-  return moves && mm_s > 0 ? LengthMm(step, state) / mm_s : 0;
+  return command.Moves() && mm_s > 0 ? LengthMm(step, state) / mm_s : 0;
 }
 
 }  // namespace traverse::gcode

@@ -53,12 +53,6 @@ struct LayerTravel {
   Additions at_marks;  // where scripts may change tools, prime and wait as well
 };
 
-// Filament is pulled back, or pushed, at a standstill.
-bool StandsStill(const Step& step) {
-  return step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
-         step.kind == StepKind::kFirmwareUnretract;
-}
-
 class TravelLearner {
  public:
   explicit TravelLearner(const GcodeFile& file) : file_(file) {}
@@ -95,7 +89,7 @@ class TravelLearner {
       if (retracts) all.Follow(step, interpreter);
       if (retracts && travels) travel.Follow(step, interpreter);
       if (retracts && travels) flowing.Follow(step, interpreter);
-      if (StandsStill(step)) travel.Stop();
+      if (MovesFilament(step.kind)) travel.Stop();
       LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;

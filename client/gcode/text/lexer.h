@@ -69,6 +69,9 @@ struct Command {
   bool Is(char command_letter, int command_number) const {
     return kind == LineKind::kCommand && letter == command_letter && number == command_number;
   }
+
+  // G0 to G3.
+  bool Moves() const { return kind == LineKind::kCommand && letter == 'G' && number <= 3; }
 };
 
 // Reads the line `text` (without line end) into `command`. Reads the words of G0 to G3 and of G92

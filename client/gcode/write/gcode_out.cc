@@ -56,11 +56,9 @@ void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, MachineState
     LexLine(line.Text(text), command);
     if (without_progress && std::binary_search(progress, file_.progress.end(), line.begin))
       continue;
-    const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
-                       command.number <= 3 && command.Has('E');
     FollowModes(command, modes);
     if (command.Is('G', 92) && command.Has('E')) shift = 0;
-    if (moves && shift != 0 && !modes.RelativeE()) {
+    if (command.Moves() && command.Has('E') && shift != 0 && !modes.RelativeE()) {
       const WordChange e{'E', command.Value('E') + shift, file_.e_style};
       AppendEdited(raw, {&e, 1}, text_);
     } else {
@@ -111,8 +109,7 @@ void GcodeOut::Edited(const LinkLine& line) {
     text_.append(line.raw);
     return;
   }
-  Begin(step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
-        step.kind == StepKind::kFirmwareUnretract);
+  Begin(MovesFilament(step.kind));
   at.machine.e += step.filament;
   WordChange changes[5];
   size_t count = 0;
