@@ -61,17 +61,17 @@ void NewLink::Travel(std::string_view line, const Position& to, Decimal feed) {
 
 void NewLink::Feed(Decimal feed) {
   machine_.feed = feed;
-  Add(LineForm::kFeed, {}, StepKind::kFeed, machine_.at);
+  Add(LineForm::kStand, {}, StepKind::kFeed, machine_.at);
 }
 
 void NewLink::Lift(Decimal z, Decimal feed) {
   machine_.feed = feed;
-  Add(LineForm::kLift, {}, StepKind::kLift, {machine_.at.x, machine_.at.y, z});
+  Add(LineForm::kStand, {}, StepKind::kLift, {machine_.at.x, machine_.at.y, z});
 }
 
 void NewLink::Pull(Decimal filament, Decimal feed) {
   machine_.feed = feed;
-  Add(LineForm::kPull, {}, StepKind::kFilament, machine_.at).step.filament = -filament;
+  Add(LineForm::kStand, {}, StepKind::kFilament, machine_.at).step.filament = -filament;
   pulled_ += filament;
 }
 

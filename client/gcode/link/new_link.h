@@ -21,15 +21,13 @@ namespace traverse::gcode {
 
 // How a line comes to be.
 enum class LineForm : uint8_t {
-  kRaw,     // as it is in the file
-  kEdited,  // a line of the file, of whose words those are changed that are not right here
-  kTravel,  // a line of the file, whose words are changed, or added, for a travel move
-  kSetter,  // as it is in the file; it sets slots
-  kState,   // whatever lines set what is not set as it must be
-  kFeed,    // new, and so are those below
-  kLift,
-  kPull,
-  kSegment,  // a move with filament or without
+  kRaw,      // as it is in the file
+  kEdited,   // a line of the file, of whose words those are changed that are not right here
+  kTravel,   // a line of the file, whose words are changed, or added, for a travel move
+  kSetter,   // as it is in the file; it sets slots
+  kState,    // whatever lines set what is not set as it must be
+  kStand,    // new: moves Z alone, filament alone, or nothing and states the feed rate
+  kSegment,  // new: a move with filament or without
 };
 
 struct LinkLine {

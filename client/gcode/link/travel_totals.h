@@ -20,25 +20,18 @@ struct TravelTotals {
   // For a single move: its length if it counts as open, without what continues along a path.
   double open_mm = 0;
 
-  TravelTotals& operator+=(const TravelTotals& other) {
-    seconds += other.seconds;
-    mm += other.mm;
-    crossings += other.crossings;
-    open += other.open;
-    too_long += other.too_long;
-    retractions += other.retractions;
-    blocked += other.blocked;
-    return *this;
-  }
+  TravelTotals& operator+=(const TravelTotals& other) { return Add(other, 1); }
+  TravelTotals& operator-=(const TravelTotals& other) { return Add(other, -1); }
 
-  TravelTotals& operator-=(const TravelTotals& other) {
-    seconds -= other.seconds;
-    mm -= other.mm;
-    crossings -= other.crossings;
-    open -= other.open;
-    too_long -= other.too_long;
-    retractions -= other.retractions;
-    blocked -= other.blocked;
+ private:
+  TravelTotals& Add(const TravelTotals& other, int sign) {
+    seconds += sign * other.seconds;
+    mm += sign * other.mm;
+    crossings += sign * other.crossings;
+    open += sign * other.open;
+    too_long += sign * other.too_long;
+    retractions += sign * other.retractions;
+    blocked += sign * other.blocked;
     return *this;
   }
 };

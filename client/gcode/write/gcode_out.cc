@@ -183,38 +183,24 @@ void GcodeOut::AppendE(Decimal filament) {
   AppendWord('E', at.machine.RelativeE() ? filament : at.machine.e, file_.e_style);
 }
 
-void GcodeOut::Feed(Decimal feed) {
-  Begin(false);
+void GcodeOut::Stand(const LinkStep& step) {
+  Begin(step.kind == StepKind::kFilament);
   text_.append("G1");
-  AppendWord('F', feed, NumberStyle{});
+  if (step.kind == StepKind::kLift) AppendWord('Z', step.to.z, file_.xy_style);
+  if (step.kind == StepKind::kFilament) AppendE(step.filament);
+  if (step.feed != at.machine.feed) AppendWord('F', step.feed, NumberStyle{});
   EndLine();
-  at.machine.feed = feed;
-}
-
-void GcodeOut::Lift(Decimal z, Decimal feed) {
-  Begin(false);
-  text_.append("G1");
-  AppendWord('Z', z, file_.xy_style);
-  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
-  EndLine();
-  at.machine.at.z = z;
-  at.machine.feed = feed;
-}
-
-void GcodeOut::Pull(Decimal filament, Decimal feed) {
-  Begin(true);
-  text_.append("G1");
-  AppendE(-filament);
-  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
-  EndLine();
-  at.machine.feed = feed;
+  at.machine.at.z = step.to.z;
+  at.machine.feed = step.feed;
 }
 
 void GcodeOut::Segment(std::string_view command, const Position& to, bool extrudes,
                        Decimal filament, Decimal feed, std::string_view words,
                        std::string_view comment) {
   Begin(false);
-  if (feed != at.machine.feed && file_.feed_on_own_line) Feed(feed);
+  if (feed != at.machine.feed && file_.feed_on_own_line) {
+    Stand({.kind = StepKind::kFeed, .to = at.machine.at, .feed = feed});
+  }
   text_.append(command);
   if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
   AppendWord('X', to.x, file_.xy_style);

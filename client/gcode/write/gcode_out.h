@@ -56,10 +56,9 @@ class GcodeOut {
   // and adds needed words that it lacks.
   void Travel(std::string_view line, const Position& to, Decimal feed);
 
-  // A line of our own: `G1` with the given words, in the styles of the file.
-  void Feed(Decimal feed);
-  void Lift(Decimal z, Decimal feed);
-  void Pull(Decimal filament, Decimal feed);
+  // A line of our own, in the styles of the file: `G1` for `step`, which moves Z alone, filament
+  // alone, or nothing and states the feed rate.
+  void Stand(const LinkStep& step);
 
   // G1 (or another `command`) to `to`; with an E word if `extrudes`. `words` follow X and Y,
   // `comment` stands at the end.

@@ -24,14 +24,8 @@ void PrintLink(const NewLink& link, GcodeOut& out) {
       case LineForm::kState:
         out.Set(link.state(line), step.slots);
         break;
-      case LineForm::kFeed:
-        out.Feed(step.feed);
-        break;
-      case LineForm::kLift:
-        out.Lift(step.to.z, step.feed);
-        break;
-      case LineForm::kPull:
-        out.Pull(-step.filament, step.feed);
+      case LineForm::kStand:
+        out.Stand(step);
         break;
       case LineForm::kSegment:
         out.Segment("G1", step.to, line.extrudes, step.filament, step.feed, {}, {});

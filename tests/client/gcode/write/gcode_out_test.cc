@@ -14,29 +14,36 @@ namespace {
 
 using testing::Sketch;
 
+LinkStep Alone(StepKind kind, Decimal feed) {
+  LinkStep step;
+  step.kind = kind;
+  step.to.z = step.filament = kDecimalOne;
+  step.feed = feed;
+  return step;
+}
+
 // A feed rate is written where it is not in force yet, whatever the line before was there for.
 TEST(GcodeOut, WritesAFeedRateOnce) {
   const auto file = Sketch().Square(0, 0, 10).GoRetracted(30, 5).Infill(31, 5).Read();
-  const Decimal one = kDecimalOne;
   const Decimal slow = 1234 * kDecimalOne;
   const Decimal fast = 4321 * kDecimalOne;
   std::string text;
   GcodeOut out(*file, StartBehind(*file, file->blocks[0]), text);
   const auto written = [&] { return std::exchange(text, {}); };
 
-  out.Pull(one, slow);
+  out.Stand(Alone(StepKind::kFilament, slow));
   EXPECT_NE(written().find("F1234"), std::string::npos);
-  out.Pull(one, slow);
+  out.Stand(Alone(StepKind::kFilament, slow));
   EXPECT_EQ(written().find('F'), std::string::npos);
-  out.Lift(one, slow);
+  out.Stand(Alone(StepKind::kLift, slow));
   EXPECT_EQ(written().find('F'), std::string::npos);
-  out.Lift(one, fast);
+  out.Stand(Alone(StepKind::kLift, fast));
   EXPECT_NE(written().find("F4321"), std::string::npos);
-  out.Pull(one, fast);
+  out.Stand(Alone(StepKind::kFilament, fast));
   EXPECT_EQ(written().find('F'), std::string::npos);
-  out.Feed(slow);
+  out.Stand(Alone(StepKind::kFeed, slow));
   EXPECT_EQ(written(), "G1 F1234\n");
-  out.Pull(one, slow);
+  out.Stand(Alone(StepKind::kFilament, slow));
   EXPECT_EQ(written().find('F'), std::string::npos);
 }
 
@@ -60,7 +67,7 @@ TEST(GcodeOut, SetsNothingBetweenARetractionAndItsWait) {
     GcodeOut out(*file, start, text);
     out.Set(file->states[file->blocks[1].state_in], kDynamicsSlots);
     out.Edited(wait);
-    out.Pull(kDecimalOne, start.machine.feed);
+    out.Stand(Alone(StepKind::kFilament, start.machine.feed));
     return text.substr(0, text.find("G1"));
   };
 
