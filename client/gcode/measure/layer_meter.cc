@@ -37,64 +37,54 @@ std::vector<size_t> PathMarks(const GcodeFile& file, const Layer& layer) {
 
 namespace {
 
-// Notes the moments of a text while its steps are followed.
-class MomentNotes {
- public:
-  // `moments` may be null.
-  explicit MomentNotes(TextMoments* moments) : moments_(moments) {}
-
-  // The line at `offset` is reached.
-  void Reach(size_t offset) {
-    if (moments_ == nullptr) return;
-    std::vector<double>& known = moments_->seconds;
-    while (known.size() < moments_->offsets.size() && moments_->offsets[known.size()] <= offset) {
-      known.push_back(seconds_);
+// The nominal seconds of the lines `text`; calls visit(step, the interpreter behind it, when the
+// step begins) for each. Measures `moments`, unless that is null.
+template <typename Visit>
+double FollowLines(const GcodeFile& file, std::string_view text, const PartStart& start,
+                   TextMoments* moments, Visit visit) {
+  Interpreter interpreter(text, 0, start.machine);
+  double seconds = 0;
+  const auto reach = [moments, &seconds](size_t offset) {
+    if (moments == nullptr) return;
+    std::vector<double>& known = moments->seconds;
+    while (known.size() < moments->offsets.size() && moments->offsets[known.size()] <= offset) {
+      known.push_back(seconds);
     }
+  };
+  size_t lines = 0;
+  for (Step step; interpreter.Next(step);) {
+    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
+    reach(step.line.begin);
+    visit(step, interpreter, seconds);
+    seconds += NominalSeconds(step, interpreter.state());
   }
-  void Add(double seconds) { seconds_ += seconds; }
-  double seconds() const { return seconds_; }
-
- private:
-  TextMoments* moments_;
-  double seconds_ = 0;
-};
+  reach(text.size());
+  return seconds;
+}
 
 }  // namespace
 
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
                     const VisibleWalls* walls, const Room* room, TextMoments* moments) {
   PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters), walls);
-  Interpreter interpreter(text, 0, start.machine);
-  MomentNotes notes(moments);
   int64_t blocked = 0;
-  size_t lines = 0;
-  for (Step step; interpreter.Next(step);) {
-    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
-    notes.Reach(step.line.begin);
+  const auto follow = [&](const Step& step, const Interpreter& interpreter, double) {
     meter.Follow(step, interpreter);
-    notes.Add(NominalSeconds(step, interpreter.state()));
     if (room != nullptr && IsBlocked(step, interpreter.state(), *room)) ++blocked;
-  }
-  notes.Reach(text.size());
+  };
+  const double nominal_seconds = FollowLines(file, text, start, moments, follow);
   PrintTotals totals = meter.Finish();
-  totals.nominal_seconds = notes.seconds();
+  totals.nominal_seconds = nominal_seconds;
   totals.blocked = blocked;
   return totals;
 }
 
 double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
                       TextMoments* moments, const VisitStep& visit) {
-  Interpreter interpreter(text, 0, start.machine);
-  MomentNotes notes(moments);
-  size_t lines = 0;
-  for (Step step; interpreter.Next(step);) {
-    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
-    notes.Reach(step.line.begin);
-    if (visit) visit(step, notes.seconds());
-    notes.Add(NominalSeconds(step, interpreter.state()));
-  }
-  notes.Reach(text.size());
-  return notes.seconds();
+  return FollowLines(file, text, start, moments,
+                     [&visit](const Step& step, const Interpreter&, double seconds) {
+                       if (visit) visit(step, seconds);
+                     });
 }
 
 PartStart StartOfFile(const GcodeFile& file) {

@@ -18,10 +18,7 @@ double DwellSeconds(const Step& step) {
 // The move goes along its arc and rises meanwhile; the filament counts where nothing else moves.
 double LengthMm(const Step& step, const MachineState& state) {
   const double unit = state.UnitMm();
-  const double dx = ToDouble(state.at.x - step.from.x) * unit;
-  const double dy = ToDouble(state.at.y - step.from.y) * unit;
-  const double flat =
-      step.arc ? ArcLength(step.command, step.from, state.at, unit) : std::sqrt(dx * dx + dy * dy);
+  const double flat = StepLengthMm(step, state);
   const double rise = ToDouble(state.at.z - step.from.z) * unit;
   const double length = rise == 0 ? flat : std::hypot(flat, rise);
   return length > 0 ? length : std::abs(ToDouble(step.filament)) * unit;

@@ -9,12 +9,6 @@
 namespace traverse::gcode {
 namespace {
 
-double LengthXy(const Position& from, const Position& to) {
-  const double dx = ToDouble(to.x - from.x);
-  const double dy = ToDouble(to.y - from.y);
-  return std::sqrt(dx * dx + dy * dy);
-}
-
 PlannerRules RulesOf(const MachineProfile& profile) {
   return {profile.klipper, profile.cruise_ratio, profile.extruder_corner_speed};
 }
@@ -111,13 +105,12 @@ double PrintMeter::MoveXy(const Step& step, const MachineState& state) {
   }
   planner_.Move(ToDouble(state.at.x - step.from.x) * unit,
                 ToDouble(state.at.y - step.from.y) * unit, speed, accel, corner);
-  return LengthXy(step.from, state.at) * unit;
+  return StepLengthMm(step, state);
 }
 
 double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
   const double unit = state.UnitMm();
-  const double flat = step.arc ? ArcLength(step.command, step.from, state.at, unit)
-                               : LengthXy(step.from, state.at) * unit;
+  const double flat = StepLengthMm(step, state);
   const double rise = ToDouble(state.at.z - step.from.z) * unit;
   const double length = std::hypot(flat, rise);
   if (!(length > 0)) return 0;

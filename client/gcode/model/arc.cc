@@ -86,6 +86,14 @@ double ArcLength(const Command& command, const Position& from, const Position& t
   return circle.angle * circle.radius * unit_mm;
 }
 
+double StepLengthMm(const Step& step, const MachineState& after) {
+  const double unit_mm = after.UnitMm();
+  if (step.arc) return ArcLength(step.command, step.from, after.at, unit_mm);
+  const double dx = ToDouble(after.at.x - step.from.x);
+  const double dy = ToDouble(after.at.y - step.from.y);
+  return std::sqrt(dx * dx + dy * dy) * unit_mm;
+}
+
 std::vector<Point> ArcPoints(const Command& command, const Position& from, const Position& to,
                              double unit_mm, double tolerance_mm) {
   const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));

@@ -15,6 +15,10 @@ namespace traverse::gcode {
 double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
                  double directions[4] = nullptr);
 
+// The length in mm that the move of `step` has in the plane, along its arc if it is one. The
+// machine is in `after` behind it.
+double StepLengthMm(const Step& step, const MachineState& after);
+
 // Points on that arc between its ends, in mm and in order, such that the lines between them stay
 // within `tolerance_mm` of it; none for a flatter arc. At most 719, or 15 of an arc of more than
 // 10 m.

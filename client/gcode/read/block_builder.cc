@@ -62,14 +62,6 @@ bool ReachesFarBeyond(const BoundingBox& box, const BoundingBox& travel) {
          travel.high().x > box.high().x + kAsideMm || travel.high().y > box.high().y + kAsideMm;
 }
 
-double StepMm(const Step& step, const MachineState& after) {
-  const double unit = after.UnitMm();
-  if (step.arc) return ArcLength(step.command, step.from, after.at, unit);
-  const double dx = ToDouble(after.at.x - step.from.x);
-  const double dy = ToDouble(after.at.y - step.from.y);
-  return std::sqrt(dx * dx + dy * dy) * unit;
-}
-
 // What a line that moves nothing does to the link that it stands in.
 uint16_t LinkFlagsOf(StepKind kind) {
   switch (kind) {
@@ -164,7 +156,7 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
   link_.retracted = link_.retracted || step.retracted;
   if (step.relative) link_.relative_rise += after.at.z - before.at.z;
   if (IsXyMotion(step.kind)) {
-    const double mm = StepMm(step, after);
+    const double mm = StepLengthMm(step, after);
     link_.travel_mm += mm;
     if (link_.xy_moves++ == 0 && step.kind == StepKind::kTravel) {
       link_.first_move_mm = mm;
@@ -404,7 +396,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
                        ? kBlockArcs
                        : kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
-  block.length_mm += static_cast<float>(StepMm(step, after));
+  block.length_mm += static_cast<float>(StepLengthMm(step, after));
   const Point end = after.InMm(after.at);
   file_.ends.push_back(end);
   printed_.Add(end);
@@ -432,7 +424,7 @@ void BlockBuilder::EndBlock() {
 bool BlockBuilder::IsTail(const Step& step, const MachineState& before,
                           const MachineState& after) const {
   return step.kind == StepKind::kTravel && !step.arc && before.at.z == after.at.z &&
-         after.feed <= Last().feed_out && StepMm(step, after) <= kMaxTailMm;
+         after.feed <= Last().feed_out && StepLengthMm(step, after) <= kMaxTailMm;
 }
 
 // After such a line it is unknown where the head is, and what was printed before.
