@@ -110,10 +110,9 @@ void LinkComposer::ComposeBoundary() {
       if (own != nullptr) Arrive(*own);
     }
   }
-  const uint32_t to = to_.placement().block;
-  if (to != boundary && !IsBoundary(file_.blocks[to])) {
-    AddSaid();
-    AddComments();
+  if (to_.placement().block != boundary) {
+    AddOwn({StepKind::kSays, StepKind::kStay});
+    AddOwn({StepKind::kComment});
   }
   Settle(link);
 }

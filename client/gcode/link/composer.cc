@@ -111,10 +111,10 @@ void LinkComposer::ComposePlain() {
                 donors_.highest_lift(), link_.machine().UnitMm());
   // A scarf seam begins lower than its layer.
   const Decimal height = std::max(to_.first().z, to_.last().z);
-  if (!IsBoundary(to_.block())) AddSaid();
+  AddOwn({StepKind::kSays, StepKind::kStay});
   TravelAs(like, height + rise.lift, rise);
   Arrive(like);
-  if (!IsBoundary(to_.block())) AddComments();
+  AddOwn({StepKind::kComment});
   Settle(like);
 }
 
@@ -261,17 +261,13 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
   const Position& to = to_.first();
   const Decimal z = link_.at().z;
   if (like.arrival < 0) {
-    link_.Travels();
     if (!to.SameXy(link_.at())) link_.Segment(to, false, 0, link_.machine().feed);
-    return link_.Arrives();
+    return;
   }
   const LinkStep& step = like.arriving();
   // Behind a line that is not understood the head may be elsewhere.
   const bool stays = to.SameXy(link_.at()) && like.fixed == 0;
-  if (stays && z == to.z) {
-    link_.Travels();
-    return;
-  }
+  if (stays && z == to.z) return;
   top = std::max(top, z);
   std::vector<Position> travel = BendsToNext();
   for (Position& at : travel) at.z = top;
@@ -283,9 +279,7 @@ void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
   } else if (top > z) {
     Slope(link_.at(), rise, link_.machine().UnitMm(), travel);
   }
-  link_.Travels();
   for (const Position& at : travel) link_.Travel(step.line.Raw(file_.text), at, step.feed);
-  link_.Arrives();
 }
 
 void LinkComposer::Arrive(const Link& like) {
@@ -318,22 +312,15 @@ LinkStep LinkComposer::Balanced(LinkStep step, const Link& like) const {
   return step;
 }
 
-// Together, and where the nozzle is not yet where it would leave a blob: a beep may take a while.
-void LinkComposer::AddSaid() {
-  const uint32_t block = to_.placement().block;
-  if ((file_.blocks[block].link & kLinkComments) == 0) return;
-  for (const LinkStep& step : parts_.LinkTo(block)->steps) {
-    // What tells a heater the same again is known by what stands before the link alone.
-    const bool says = step.kind == StepKind::kSays || step.kind == StepKind::kStay;
-    if (says) link_.Raw(step.line.Raw(file_.text));
-  }
-}
-
-void LinkComposer::AddComments() {
-  const uint32_t block = to_.placement().block;
-  if ((file_.blocks[block].link & kLinkComments) == 0) return;
-  for (const LinkStep& step : parts_.LinkTo(block)->steps) {
-    if (step.kind == StepKind::kComment) link_.Raw(step.line.Raw(file_.text));
+// The lines of these kinds that stand before the path in the file, unless marks do: together, and
+// messages where the nozzle is not yet where it would leave a blob, as a beep may take a while.
+// What tells a heater the same again (a message) is known by what stands before the link alone.
+void LinkComposer::AddOwn(std::initializer_list<StepKind> kinds) {
+  const Block& to = to_.block();
+  if (IsBoundary(to) || (to.link & kLinkComments) == 0) return;
+  for (const LinkStep& step : parts_.LinkTo(to_.placement().block)->steps) {
+    const bool is_one = std::find(kinds.begin(), kinds.end(), step.kind) != kinds.end();
+    if (is_one) link_.Raw(step.line.Raw(file_.text));
   }
 }
 

@@ -74,8 +74,7 @@ class LinkComposer {
   void TravelAs(const Link& like, Decimal top, const Link& rise);
   void Arrive(const Link& like);
   LinkStep Balanced(LinkStep step, const Link& like) const;
-  void AddSaid();
-  void AddComments();
+  void AddOwn(std::initializer_list<StepKind> kinds);
   void Settle(const Link& like);
 
   // The line of `step` where the head stands.

@@ -22,10 +22,6 @@ void NewLink::Keep(const FilePart& part) {
   pulled_ = machine_.retracted;
 }
 
-void NewLink::Travels() { travel_ = arrival_ = lines_.size(); }
-
-void NewLink::Arrives() { arrival_ = lines_.size(); }
-
 void NewLink::Raw(std::string_view line) {
   Add(LineForm::kRaw, line, StepKind::kComment, machine_.at);
 }

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "absl/types/span.h"
 #include "client/gcode/link/link.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/part_start.h"
@@ -48,7 +47,7 @@ struct FilePart {
   bool without_progress = false;  // leaves out lines of progress
 };
 
-// What a composer says becomes a line; at which part of the link, Travels and Arrives say.
+// What a composer says becomes a line.
 class NewLink {
  public:
   // The link begins with the machine at `at`, whose extruder does not matter.
@@ -63,17 +62,11 @@ class NewLink {
 
   // What stays, ahead of all lines.
   const std::optional<FilePart>& part() const { return part_; }
-  absl::Span<const LinkLine> lines() const { return lines_; }
-  absl::Span<const LinkLine> departure() const { return lines().subspan(0, travel_); }
-  absl::Span<const LinkLine> travel() const { return lines().subspan(travel_, arrival_ - travel_); }
-  absl::Span<const LinkLine> arrival() const { return lines().subspan(arrival_); }
+  const std::vector<LinkLine>& lines() const { return lines_; }
   const PrintState& state(const LinkLine& line) const { return states_[line.state]; }
 
   // REQUIRES: there are no lines yet.
   void Keep(const FilePart& part);
-
-  void Travels();
-  void Arrives();
 
   void Raw(std::string_view line);
   void Set(const PrintState& state, SlotMask slots);
@@ -98,8 +91,6 @@ class NewLink {
   std::optional<FilePart> part_;
   std::vector<LinkLine> lines_;
   std::vector<PrintState> states_;
-  size_t travel_ = 0;
-  size_t arrival_ = 0;
 };
 
 }  // namespace traverse::gcode
