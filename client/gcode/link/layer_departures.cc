@@ -131,7 +131,7 @@ Point LayerDepartures::BackOver(const Placement& from, double mm) const {
     go_to(points[from.entry]);
     for (size_t i = 1; i < n && mm > 0; ++i) go_to(points[(from.entry + i) % (n - 1)]);
   } else {
-    for (size_t i = 0; i < n && mm > 0; ++i) go_to(points[from.as_given() ? n - 1 - i : i]);
+    for (size_t i = 0; i < n && mm > 0; ++i) go_to(points[i]);
   }
   return at;
 }

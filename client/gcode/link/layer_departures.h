@@ -63,6 +63,7 @@ class LayerDepartures {
   void Note(uint32_t block);
 
   // The position of the head `mm` after the end of `from`, on the way back along the path.
+  // REQUIRES: it is not as given.
   Point BackOver(const Placement& from, double mm) const;
 
   const GcodeFile& file_;

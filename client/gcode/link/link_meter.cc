@@ -66,7 +66,7 @@ class LinkMeter {
 
 double LinkSeconds(const GcodeFile& file, const PathEnds& from, const MachineState& at,
                    const NewLink& link, const PathEnds& to) {
-  PrintMeter meter = from.Meter(from.last());
+  PrintMeter meter = from.Meter();
   from.Follow(from.last(), meter);
   LinkMeter(file, {at, from.state_behind()}, meter).Follow(link);
   to.Follow(to.first(), meter);

@@ -36,8 +36,7 @@ std::vector<BodySegment> MovesOf(const PlacedPath& path, const PathBody& body) {
 
 PathEnds::PathEnds(const GcodeFile& file, const PlacedPath& path)
     : file_(&file), modes_(file.modes[path.block().mode]) {
-  const PathBody given = path.as_given() ? ReadBody(file, path.block()) : PathBody();
-  const PathBody& body = path.as_given() ? given : path.body();
+  const PathBody body = path.PrintedBody();
   states_ = body.states;
   for (const PrintState& state : states_) {
     dynamics_.push_back(DynamicsOf(file.profile, state, file.setters));
@@ -72,13 +71,8 @@ bool PathEnds::IsEnough(double mm, const BodySegment& move) const {
   return mm > 0 && mm * accel >= speed * speed;
 }
 
-PrintMeter PathEnds::Meter(const PrintedMoves& printed) const {
-  const size_t state = printed.moves.empty() ? 0 : printed.moves.front().state;
-  return PrintMeter(file_->profile, dynamics_[state], nullptr);
-}
-
 double PathEnds::SecondsOf(const PrintedMoves& printed) const {
-  PrintMeter meter = Meter(printed);
+  PrintMeter meter = Meter();
   Follow(printed, meter);
   return meter.Finish().seconds;
 }

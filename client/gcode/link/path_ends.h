@@ -31,8 +31,8 @@ class PathEnds {
   // What is in force behind the path.
   const PrintState& state_behind() const { return states_.back(); }
 
-  // A meter at standstill where `printed`, first() or last(), begins; follows it.
-  PrintMeter Meter(const PrintedMoves& printed) const;
+  // A meter at standstill, and what follows first() or last() with it.
+  PrintMeter Meter() const { return PrintMeter(file_->profile, dynamics_.front(), nullptr); }
   void Follow(const PrintedMoves& printed, PrintMeter& meter) const;
 
  private:

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "client/gcode/dialects/dialect.h"
-#include "client/gcode/model/arc.h"
 #include "client/gcode/model/path_body.h"
 #include "client/gcode/text/text.h"
 
@@ -56,18 +55,14 @@ double WidthOf(const GcodeFile& file, const Block& block) {
 
 // An arc of a larger radius is as good as straight.
 constexpr double kMostRadiusMm = 1e4;
-constexpr double kBentToleranceMm = 0.01;
 
 std::vector<Point> BentShape(const GcodeFile& file, const Block& block) {
   const MachineState& mode = file.modes[block.mode];
   std::vector<Point> shape = {mode.InMm(block.first)};
   for (const BodySegment& segment : ReadBody(file, block).segments) {
-    if (segment.command >= 2) {
-      const Point from = mode.InMm(segment.from);
-      for (const Point& point : ArcPoints(ArcCommand(segment), segment.from, segment.to,
-                                          mode.UnitMm(), kBentToleranceMm)) {
-        if (Distance(from, point) < 2 * kMostRadiusMm) shape.push_back(point);
-      }
+    const Point from = mode.InMm(segment.from);
+    for (const Point& point : BendsOf(segment, mode.UnitMm())) {
+      if (Distance(from, point) < 2 * kMostRadiusMm) shape.push_back(point);
     }
     shape.push_back(mode.InMm(segment.to));
   }

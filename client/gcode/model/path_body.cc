@@ -1,5 +1,6 @@
 #include "client/gcode/model/path_body.h"
 
+#include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/positions.h"
 
@@ -69,6 +70,12 @@ Command ArcCommand(const BodySegment& segment) {
     set('J', segment.center_j);
   }
   return command;
+}
+
+std::vector<Point> BendsOf(const BodySegment& segment, double unit_mm) {
+  constexpr double kToleranceMm = 0.01;
+  if (segment.command < 2) return {};
+  return ArcPoints(ArcCommand(segment), segment.from, segment.to, unit_mm, kToleranceMm);
 }
 
 BodySegment Reversed(const BodySegment& segment) {

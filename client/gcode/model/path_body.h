@@ -40,6 +40,10 @@ PathBody ReadBody(const GcodeFile& file, const Block& block);
 // The words of `segment`, which is an arc.
 Command ArcCommand(const BodySegment& segment);
 
+// Points on `segment` between its ends, in mm, so near to each other that the lines between them
+// are as good; none unless it is an arc.
+std::vector<Point> BendsOf(const BodySegment& segment, double unit_mm);
+
 // The same segment from its end to its start.
 BodySegment Reversed(const BodySegment& segment);
 

@@ -2,26 +2,12 @@
 
 #include <algorithm>
 
-#include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/positions.h"
 #include "client/gcode/model/seam_gap.h"
 
 namespace traverse::gcode {
 namespace {
-
-// Points on an arc, so near to each other that the lines between them are as good.
-std::vector<Position> BendsOf(const BodySegment& segment, double unit_mm) {
-  constexpr double kToleranceMm = 0.01;
-  std::vector<Position> bends;
-  if (segment.command < 2) return bends;
-  for (const Point& point :
-       ArcPoints(ArcCommand(segment), segment.from, segment.to, unit_mm, kToleranceMm)) {
-    bends.push_back(InWords(point, unit_mm));
-    bends.back().z = segment.from.z;
-  }
-  return bends;
-}
 
 // The way back from beside a path is searched for in so many steps, until its length fits as far as
 // coordinates tell.
@@ -102,9 +88,10 @@ void PlacedPath::PlaceRotated() {
   last_ = segments.back().to;
 }
 
+PathBody PlacedPath::PrintedBody() const { return as_given() ? ReadBody(*file_, block()) : body_; }
+
 std::vector<Position> PlacedPath::Retrace(double length) const {
-  if (!as_given()) return RetraceOver(body_.segments, length);
-  return RetraceOver(ReadBody(*file_, block()).segments, length);
+  return RetraceOver(PrintedBody().segments, length);
 }
 
 std::vector<Position> PlacedPath::RetraceOver(const std::vector<BodySegment>& segments,
@@ -124,8 +111,8 @@ std::vector<Position> PlacedPath::RetraceOver(const std::vector<BodySegment>& se
   const size_t n = segments.size();
   for (size_t i = 0; i < n && length > 0; ++i) {
     const BodySegment next = placement_.closed ? segments[i] : Reversed(segments[n - 1 - i]);
-    for (const Position& bend : BendsOf(next, unit_mm())) {
-      if (length > 0) go_to(bend);
+    for (const Point& bend : BendsOf(next, unit_mm())) {
+      if (length > 0) go_to(InWords(bend, unit_mm()));
     }
     if (length > 0) go_to(next.to);
   }
@@ -133,9 +120,8 @@ std::vector<Position> PlacedPath::RetraceOver(const std::vector<BodySegment>& se
 }
 
 std::vector<Position> PlacedPath::RetraceFrom(const Position& begin, double length) const {
-  if (begin.SameXy(last_)) return Retrace(length);
-  const PathBody given = as_given() ? ReadBody(*file_, block()) : PathBody();
-  const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
+  const std::vector<BodySegment> segments = PrintedBody().segments;
+  if (begin.SameXy(last_)) return RetraceOver(segments, length);
   // Going back to the path from aside cuts a corner, so the same length leads farther along.
   const double farthest = length + 2 * LengthXy(last_, begin);
   std::vector<Position> travel;

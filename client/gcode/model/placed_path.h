@@ -60,8 +60,9 @@ class PlacedPath {
   // Its first line sets the feed rate itself.
   bool states_feed() const { return states_feed_; }
 
-  // Its segments in the order and direction to print them; of no meaning as given.
+  // Its segments in the order and direction to print them; the former is of no meaning as given.
   const PathBody& body() const { return body_; }
+  PathBody PrintedBody() const;
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back
   // along an open one. At most `length`, in words; at least one point if the path has any
