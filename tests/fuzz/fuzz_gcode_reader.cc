@@ -25,7 +25,7 @@ void CheckParts(const GcodeFile& file) {
     for (; block < layer.end_block; ++block) {
       const gcode::Block& path = file.blocks[block];
       Check(path.begin >= at && path.end > path.begin, "paths follow one another");
-      Check(path.segments > 0, "a path has segments");
+      Check(path.end_count > 0, "a path has segments");
       at = path.end;
     }
   }

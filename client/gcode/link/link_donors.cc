@@ -42,23 +42,20 @@ std::vector<bool> MayFollowIn(const GcodeFile& file) {
 }  // namespace
 
 LinkDonors::LinkDonors(const GcodeFile& file)
-    : file_(file),
-      layer_of_(file.blocks.size()),
-      may_follow_(MayFollowIn(file)),
-      lift_to_layers_(UsualLiftToLayers(file)) {
-  for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
-    const Layer& of = file.layers[layer];
-    std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
-  }
+    : file_(file), may_follow_(MayFollowIn(file)), lift_to_layers_(UsualLiftToLayers(file)) {
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
-    if (!MayFollow(i) || !Travels(i)) continue;
+    const Block& block = file.blocks[i];
+    // If a path begins at the end of the one before it, there is no travel to learn from.
+    if (!MayFollow(i) || !(block.travel_mm > 0)) continue;
     const Kind kind = KindOf(i);
+    const KindInLayer in_layer(kind, file.LayerOf(i));
     const Decimal rise = RiseOf(i);
     donors_[kind][rise].push_back(i);
-    first_.emplace(std::pair(kind, layer_of_[i]), i);
-    if (file.blocks[i].lift > 0) lifted_[kind][rise].push_back(i);
-    if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind][rise].push_back(i);
-    CountLifts(i);
+    first_.emplace(in_layer, i);
+    if (block.lift > 0) lifted_[kind][rise].push_back(i);
+    if ((block.link & kLinkWipes) != 0) wiping_[kind][rise].push_back(i);
+    lifts_[in_layer] += block.lift > 0 ? 1 : -1;
+    highest_lift_ = std::max(highest_lift_, block.lift);
   }
 }
 
@@ -66,23 +63,14 @@ LinkDonors::Kind LinkDonors::KindOf(uint32_t block) const {
   return {file_.blocks[block].mode, (file_.blocks[block].link & kLinkRetracts) != 0};
 }
 
-void LinkDonors::CountLifts(uint32_t link) {
-  const Block& block = file_.blocks[link];
-  lifts_[{KindOf(link), layer_of_[link]}] += block.lift > 0 ? 1 : -1;
-  highest_lift_ = std::max(highest_lift_, block.lift);
-}
-
 Decimal LinkDonors::LiftToLayer(uint32_t block) const {
-  return block > 0 && layer_of_[block] != layer_of_[block - 1] ? lift_to_layers_ : 0;
+  return block > 0 && (file_.blocks[block].link & kLinkNewLayer) != 0 ? lift_to_layers_ : 0;
 }
-
-// If a path begins at the end of the one before it, there is no travel to learn from.
-bool LinkDonors::Travels(uint32_t block) const { return file_.blocks[block].travel_mm > 0; }
 
 bool LinkDonors::LacksLift(uint32_t block) const {
   const Block& to = file_.blocks[block];
   if (to.lift > 0) return false;
-  const auto found = lifts_.find({KindOf(block), layer_of_[block]});
+  const auto found = lifts_.find({KindOf(block), file_.LayerOf(block)});
   return found != lifts_.end() && found->second > 0;
 }
 
@@ -106,8 +94,8 @@ Decimal LinkDonors::RiseOf(uint32_t block) const {
 }
 
 std::optional<uint32_t> LinkDonors::PaceFor(uint32_t block, uint32_t link) const {
-  const uint32_t layer = layer_of_[block];
-  if (layer_of_[link] == layer) return std::nullopt;
+  const size_t layer = file_.LayerOf(block);
+  if (file_.LayerOf(link) == layer) return std::nullopt;
   Kind kind = KindOf(link);
   for (int i = 0; i < 2; ++i, kind.second = !kind.second) {
     const auto found = first_.find({kind, layer});
@@ -126,11 +114,9 @@ std::optional<uint32_t> LinkDonors::FindAmong(const std::map<Kind, ByRise>& dono
   const auto behind = std::upper_bound(links.begin(), links.end(), block);
   if (behind == links.begin()) return *behind;
   const uint32_t before = *(behind - 1);
-  const uint32_t layer = layer_of_[block];
-  if (layer_of_[before] != layer && behind != links.end() && layer_of_[*behind] == layer) {
-    return *behind;
-  }
-  return before;
+  const size_t layer = file_.LayerOf(block);
+  const bool behind_is_of_it = behind != links.end() && file_.LayerOf(*behind) == layer;
+  return behind_is_of_it && file_.LayerOf(before) != layer ? *behind : before;
 }
 
 }  // namespace traverse::gcode

@@ -55,25 +55,22 @@ class LinkDonors {
  private:
   // The kind of a link: its modes, and whether it retracts.
   using Kind = std::pair<uint16_t, bool>;
+  using KindInLayer = std::pair<Kind, size_t>;
 
   // Ascending links by how much the path behind them rises.
   using ByRise = std::map<Decimal, std::vector<uint32_t>>;
 
-  bool Travels(uint32_t block) const;
   Kind KindOf(uint32_t block) const;
   std::optional<uint32_t> FindAmong(const std::map<Kind, ByRise>& links, const Kind& kind,
                                     uint32_t block) const;
-  void CountLifts(uint32_t link);
 
   const GcodeFile& file_;
-  std::vector<uint32_t> layer_of_;  // [block]
-  std::vector<bool> may_follow_;    // [block]
+  std::vector<bool> may_follow_;  // [block]
   std::map<Kind, ByRise> donors_;
-  std::map<Kind, ByRise> lifted_;                        // those of them that lift
-  std::map<Kind, ByRise> wiping_;                        // that wipe
-  std::map<std::pair<Kind, uint32_t>, uint32_t> first_;  // by kind and layer
-  // By kind and layer: links that lift, less those that do not.
-  std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
+  std::map<Kind, ByRise> lifted_;  // those of them that lift
+  std::map<Kind, ByRise> wiping_;  // that wipe
+  std::map<KindInLayer, uint32_t> first_;
+  std::map<KindInLayer, int64_t> lifts_;  // links that lift, less those that do not
   Decimal highest_lift_ = 0;
   const Decimal lift_to_layers_;  // of most links that lead to one
 };

@@ -36,21 +36,20 @@ inline constexpr double kMaxDepartureMm = 1;
 // The parts of a link.
 enum LinkFlag : uint16_t {
   kLinkRetracts = 1 << 0,
-  kLinkLifts = 1 << 1,
-  kLinkWipes = 1 << 2,     // retracts while moving
-  kLinkDeparts = 1 << 3,   // begins with a short inward move, before the travel proper
-  kLinkComments = 1 << 4,  // has comments without meaning here
-  kLinkSplits = 1 << 5,    // nothing crosses it, but its travel may be written again
-  kLinkFixed = 1 << 6,     // stays byte by byte, and so do the paths on both sides of it
-  kLinkNewLayer = 1 << 7,
+  kLinkWipes = 1 << 1,     // retracts while moving
+  kLinkDeparts = 1 << 2,   // begins with a short inward move, before the travel proper
+  kLinkComments = 1 << 3,  // has comments without meaning here
+  kLinkSplits = 1 << 4,    // nothing crosses it, but its travel may be written again
+  kLinkFixed = 1 << 5,     // stays byte by byte, and so do the paths on both sides of it
+  kLinkNewLayer = 1 << 6,
   // Begins with lines that stay byte by byte, and so does the path before it; the rest is as in a
   // link that splits.
-  kLinkFixedFrom = 1 << 8,
-  kLinkRetractsAgain = 1 << 9,  // after a prime: no example for other links
-  kLinkHeats = 1 << 10,         // sets a temperature
+  kLinkFixedFrom = 1 << 7,
+  kLinkRetractsAgain = 1 << 8,  // after a prime: no example for other links
+  kLinkHeats = 1 << 9,          // sets a temperature
   // To a layer no lower, or to the first one: leads beyond all that is printed so far, but for the
   // start script's, and back. A script's, up to the last travel move.
-  kLinkAside = 1 << 11,
+  kLinkAside = 1 << 10,
 };
 
 enum BlockFlag : uint16_t {
@@ -61,14 +60,13 @@ enum BlockFlag : uint16_t {
   kBlockComments = 1 << 4,    // has comments inside without meaning here
   kBlockProgress = 1 << 5,    // has lines of progress inside
   kBlockPinned = 1 << 6,      // printed while retracted or rising, or no true arc: stays as it is
-  kBlockState = 1 << 7,       // some slot changes inside it
-  kBlockZero = 1 << 8,        // has a segment whose extrusion rounds to nothing
-  kBlockScript = 1 << 9,      // before the first mark of a layer: a start script's
-  kBlockCommand = 1 << 10,    // a command inside it sets a slot
-  kBlockGoesOn = 1 << 11,     // closed; a move without filament continues along it after its end
-  kBlockArcs = 1 << 12,       // has arcs
-  kBlockOwnFan = 1 << 13,     // the link before it sets the fan, changed or not
-  kBlockRetracted = 1 << 14,  // printed while retracted
+  kBlockZero = 1 << 7,        // has a segment whose extrusion rounds to nothing
+  kBlockScript = 1 << 8,      // before the first mark of a layer: a start script's
+  kBlockCommand = 1 << 9,     // a command inside it sets a slot
+  kBlockGoesOn = 1 << 10,     // closed; a move without filament continues along it after its end
+  kBlockArcs = 1 << 11,       // has arcs
+  kBlockOwnFan = 1 << 12,     // the link before it sets the fan, changed or not
+  kBlockRetracted = 1 << 13,  // printed while retracted
 };
 
 struct Block {
@@ -88,10 +86,9 @@ struct Block {
   uint32_t object = 0;     // SetterTable: the label in force; 0: none
   uint32_t first_end = 0;  // of its segments' ends in GcodeFile::ends
   uint32_t end_count = 0;
-  uint16_t flags = 0;     // BlockFlag
-  uint16_t link = 0;      // LinkFlag, of the link before it
-  uint16_t segments = 0;  // extruding segments, 65535 for more
-  uint16_t mode = 0;      // index into GcodeFile::modes
+  uint16_t flags = 0;  // BlockFlag
+  uint16_t link = 0;   // LinkFlag, of the link before it
+  uint16_t mode = 0;   // index into GcodeFile::modes
 };
 
 // A run of blocks at one height. A mark of the slicer begins a new one in any case.
@@ -177,6 +174,9 @@ struct GcodeFile {
     const gcode::Offset begin = blocks[layer.first_block].begin;
     return std::string_view(text).substr(begin, blocks[layer.end_block - 1].end - begin);
   }
+
+  // Of the layer that block number `block` is in. O(log n) in the layers.
+  size_t LayerOf(size_t block) const;
 
   // Number of the line, from 1, that holds the byte at `offset`.
   size_t LineNumber(gcode::Offset offset) const;

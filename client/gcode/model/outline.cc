@@ -1,8 +1,6 @@
 #include "client/gcode/model/outline.h"
 
 #include <algorithm>
-#include <cassert>
-#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -17,9 +15,7 @@ namespace {
 constexpr double kUsualGapMm = 0.13;
 
 std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot slot) {
-  const uint32_t setter = file.states[block.state_in][slot];
-  if (setter == 0) return std::nullopt;
-  const std::string_view line = file.setters.Line(setter);
+  const std::string_view line = file.setters.Line(file.states[block.state_in][slot]);
   std::string_view number = TrimBlanks(line.substr(line.find(':') + 1));
   if (const Mark* mark = MarkOf(line); mark && mark->kind == MarkKind::kWidthAndHeight) {
     const size_t at = line.find(slot == kSlotWidth ? 'W' : 'H');
@@ -38,9 +34,8 @@ double WidthOfFlow(const GcodeFile& file, const Block& block) {
   if (!(filament > 0) || !(block.length_mm > 0)) return 0;
   const double area =
       filament * diameter * diameter * std::numbers::pi / 4 / static_cast<double>(block.length_mm);
-  const double height =
-      SlotNumber(file, block, kSlotHeight)
-          .value_or(LayerHeightMm(file, static_cast<uint32_t>(&block - file.blocks.data())));
+  const Layer& layer = file.layers[file.LayerOf(static_cast<size_t>(&block - file.blocks.data()))];
+  const double height = SlotNumber(file, block, kSlotHeight).value_or(layer.height_mm);
   return area / height + height * (1 - std::numbers::pi / 4);
 }
 
@@ -77,14 +72,6 @@ double LengthOf(const std::vector<Point>& points) {
 
 }  // namespace
 
-double LayerHeightMm(const GcodeFile& file, uint32_t block) {
-  const auto behind = std::upper_bound(
-      file.layers.begin(), file.layers.end(), block,
-      [](uint32_t number, const Layer& layer) { return number < layer.first_block; });
-  assert(behind != file.layers.begin());
-  return std::prev(behind)->height_mm;
-}
-
 double LoopGapMm(const GcodeFile& file, double width_mm) {
   constexpr double kShare = 0.15;
   constexpr double kRoundedMm = 0.005;
@@ -108,7 +95,6 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.points.reserve(block.end_count + size_t{1});
   outline.points.push_back(file.modes[block.mode].InMm(block.first));
   outline.points.insert(outline.points.end(), ends, ends + block.end_count);
-  outline.exactly_closed = outline.points.front() == outline.points.back();
   if ((block.flags & kBlockArcs) != 0) outline.bent = BentShape(file, block);
   outline.width_mm = WidthOf(file, block);
   const double gap = Distance(outline.points.front(), outline.points.back());
@@ -117,7 +103,7 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
                     static_cast<double>(block.length_mm) > shortest;
   const bool many_starts =
       outline.points.size() > 3 && (outline.bent.empty() || LengthOf(outline.points) > shortest);
-  outline.closed = outline.is_loop && (many_starts || outline.exactly_closed);
+  outline.closed = outline.is_loop && (many_starts || gap == 0);
   outline.one_start = outline.closed && !many_starts;
   outline.feature = FeatureOf(file, block, outline.is_loop);
   return outline;

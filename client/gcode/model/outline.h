@@ -32,9 +32,6 @@ struct Outline {
   bool closed = false;
   bool one_start = false;
 
-  // points.front() == points.back().
-  bool exactly_closed = false;
-
   Feature feature = Feature::kLine;
   double width_mm = 0.45;  // of the deposited line, as the file says or its E words imply
 };
@@ -42,9 +39,6 @@ struct Outline {
 // How far short of its start a loop with lines of this width may end: slicers clip up to 0.15
 // widths of the nozzle or of the line, and CuraEngine's coasting leaves 0.09 mm.
 double LoopGapMm(const GcodeFile& file, double width_mm);
-
-// Of the layer that block number `block` is in. O(log n) in the layers.
-double LayerHeightMm(const GcodeFile& file, uint32_t block);
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 

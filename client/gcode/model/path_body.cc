@@ -32,7 +32,7 @@ BodySegment SegmentOf(const Step& step, const MachineState& after) {
 PathBody ReadBody(const GcodeFile& file, const Block& block) {
   PathBody body;
   body.states.push_back(file.states[block.state_in]);
-  body.segments.reserve(block.segments);
+  body.segments.reserve(block.end_count);
   Interpreter interpreter(std::string_view(file.text).substr(0, block.end), block.begin,
                           StateAt(file, block));
   for (Step step; interpreter.Next(step);) {

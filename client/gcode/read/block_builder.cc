@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "client/gcode/dialects/label.h"
@@ -76,8 +75,6 @@ uint16_t LinkFlagsOf(StepKind kind) {
     case StepKind::kComment:
     case StepKind::kSays:
       return kLinkComments;
-    case StepKind::kLift:
-      return kLinkLifts;
     case StepKind::kFirmwareRetract:
       return kLinkRetracts;
     case StepKind::kWipe:
@@ -163,7 +160,6 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
       link_.first_move_to = after.at;
       link_.open_first_move = !step.retracted && !step.arc && after.at.z == before.at.z;
     }
-    if (after.at.z != before.at.z) link_.flags |= kLinkLifts;
     if (step.kind == StepKind::kTravel) link_.top = std::max(link_.top, after.at.z);
   }
 }
@@ -205,7 +201,7 @@ void BlockBuilder::TakeSlot(const Step& step) {
     state_[slot] = setter;
     state_dirty_ = true;
     if (where_ == Where::kBody) {
-      pending_ |= first ? kBlockState | kBlockPinned : kBlockState;
+      if (first) pending_ |= kBlockPinned;
       if ((SlotBit(static_cast<Slot>(slot)) & kFanSlots) != 0) pending_ |= kBlockFan;
       if (slot == kSlotType) pending_ |= kBlockType;
       if (line[0] != ';') pending_ |= kBlockCommand;
@@ -253,13 +249,10 @@ uint16_t BlockBuilder::ModeOf(const MachineState& state) {
   const std::array<int, 5> modes = {state.relative_xyz, state.relative_e, state.inches,
                                     state.plane_xy, state.tool};
   // Beyond 65535 different modes (tool numbers) the blocks are pinned anyway, by their T lines.
-  const bool full = file_.modes.size() == std::numeric_limits<uint16_t>::max();
-  if (full) {
-    const auto found = mode_ids_.find(modes);
-    return found == mode_ids_.end() ? static_cast<uint16_t>(file_.modes.size() - 1) : found->second;
-  }
-  const auto [id, is_new] = mode_ids_.try_emplace(modes, static_cast<uint16_t>(file_.modes.size()));
-  if (is_new) file_.modes.push_back(state);
+  constexpr size_t kMostModes = std::numeric_limits<uint16_t>::max();
+  const size_t next = std::min(file_.modes.size(), kMostModes - 1);
+  const auto [id, is_new] = mode_ids_.try_emplace(modes, static_cast<uint16_t>(next));
+  if (is_new && file_.modes.size() < kMostModes) file_.modes.push_back(state);
   return id->second;
 }
 
@@ -401,7 +394,6 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   file_.ends.push_back(end);
   printed_.Add(end);
   ++block.end_count;
-  if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }
 
 // It begins no lower than what lies below, and rises no higher than its layer. The layer before may
@@ -430,10 +422,7 @@ bool BlockBuilder::IsTail(const Step& step, const MachineState& before,
 // After such a line it is unknown where the head is, and what was printed before.
 void BlockBuilder::KeepLayersWithFaults() {
   const auto keep = [this](const LineFault& fault, size_t block) {
-    const auto behind = std::upper_bound(
-        file_.layers.begin(), file_.layers.end(), block,
-        [](size_t number, const Layer& layer) { return number < layer.first_block; });
-    Layer& layer = *std::prev(behind);
+    Layer& layer = file_.layers[file_.LayerOf(block)];
     if (layer.fault != nullptr) return;
     layer.fault = fault.what;
     layer.fault_at = fault.at;

@@ -95,7 +95,7 @@ class BlockBuilder {
   PrintState state_{};
   bool state_dirty_ = true;
   uint32_t state_id_ = 0;
-  absl::flat_hash_map<std::array<int, 5>, uint16_t> mode_ids_;  // by MachineState::Modes
+  absl::flat_hash_map<std::array<int, 5>, uint16_t> mode_ids_;
   uint32_t object_ = 0;
 
   std::vector<LineFault> faults_;

@@ -1,6 +1,7 @@
 #include "client/gcode/read/reader.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -202,6 +203,12 @@ bool CountAlike(const GcodeFile& a, const GcodeFile& b) {
 }
 
 }  // namespace gcode
+
+size_t GcodeFile::LayerOf(size_t block) const {
+  const auto behind = std::ranges::upper_bound(layers, block, {}, &gcode::Layer::first_block);
+  assert(behind != layers.begin());
+  return static_cast<size_t>(behind - layers.begin()) - 1;
+}
 
 size_t GcodeFile::LineNumber(gcode::Offset offset) const {
   return 1 + static_cast<size_t>(std::count(text.begin(), text.begin() + offset, '\n'));

@@ -20,7 +20,7 @@ using ::testing::Not;
 Outline Wall(const std::vector<Point>& points, Feature feature = Feature::kOuterWall) {
   Outline wall;
   wall.points = points;
-  wall.closed = wall.exactly_closed = true;
+  wall.closed = true;
   wall.feature = feature;
   return wall;
 }

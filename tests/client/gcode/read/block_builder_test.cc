@@ -54,7 +54,7 @@ TEST(BlockBuilder, LiftsDoNotEndALayer) {
   const auto file = Read("M83\nG1 X1 E1\nG1 E-1\nG1 Z.5\nG0 X5\nG1 Z0\nG1 E1\nG1 X6 E1\n");
 
   EXPECT_EQ(file->layers.size(), 1u);
-  EXPECT_EQ(file->blocks[1].link, kLinkRetracts | kLinkLifts);
+  EXPECT_EQ(file->blocks[1].link, kLinkRetracts);
 }
 
 TEST(BlockBuilder, WhatItDoesNotKnowFixesThePathsOnEitherSide) {
@@ -143,9 +143,9 @@ TEST(BlockBuilder, SegmentsThatRoundToNothingBelongToTheirPath) {
       "G1 X11 E1.1\n");
 
   ASSERT_EQ(file->blocks.size(), 2u);
-  EXPECT_EQ(file->blocks[0].segments, 3);
+  EXPECT_EQ(file->blocks[0].end_count, 3);
   EXPECT_TRUE(file->blocks[0].flags & kBlockZero);
-  EXPECT_EQ(file->blocks[1].segments, 2);
+  EXPECT_EQ(file->blocks[1].end_count, 2);
 }
 
 TEST(BlockBuilder, TravelWithAnEThatPushesNothingBelongsToNoPathHoweverShort) {
@@ -155,8 +155,8 @@ TEST(BlockBuilder, TravelWithAnEThatPushesNothingBelongsToNoPathHoweverShort) {
 
   ASSERT_EQ(file->blocks.size(), 2u);
   EXPECT_FALSE(file->blocks[0].flags & kBlockZero);
-  EXPECT_EQ(file->blocks[0].segments, 1);
-  EXPECT_EQ(file->blocks[1].segments, 3);
+  EXPECT_EQ(file->blocks[0].end_count, 1);
+  EXPECT_EQ(file->blocks[1].end_count, 3);
 }
 
 TEST(BlockBuilder, AMoveThatRoundsToNothingEndsNoPath) {

@@ -52,7 +52,7 @@ TEST(ReadGcode, LoopsMayEndShortOfTheirStart) {
   const Outline line = OutlineOf(*file, file->blocks[1]);
 
   EXPECT_TRUE(loop.closed);
-  EXPECT_FALSE(loop.exactly_closed);
+  EXPECT_NE(loop.points.front(), loop.points.back());
   EXPECT_EQ(loop.feature, Feature::kInnerWall);
   EXPECT_DOUBLE_EQ(loop.width_mm, 0.45);
   EXPECT_FALSE(line.closed);
@@ -96,7 +96,7 @@ TEST(ReadGcode, WhatCountsFromTheMoveBeforeNeedNotSaySo) {
   const auto absolute = Read("G1 X1 E.3\nG1 X2 E.6\nG1 X3 E.8\nG0 X9\nG1 X10 E1.1\n");
 
   EXPECT_TRUE(relative->modes[0].relative_e);
-  EXPECT_EQ(relative->blocks[0].segments, 3);
+  EXPECT_EQ(relative->blocks[0].end_count, 3);
   EXPECT_FALSE(absolute->modes[0].relative_e);
 }
 
