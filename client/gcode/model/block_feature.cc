@@ -1,7 +1,5 @@
 #include "client/gcode/model/block_feature.h"
 
-#include <string_view>
-
 #include "client/gcode/dialects/dialect.h"
 
 namespace traverse::gcode {
@@ -18,10 +16,12 @@ Feature FeatureOfComment(const GcodeFile& file, const Block& block) {
 
 }  // namespace
 
+std::string_view TypeOf(const GcodeFile& file, const Block& block) {
+  return TypeIn(file.setters.Line(file.states[block.state_in][kSlotType]));
+}
+
 Feature NamedFeature(const GcodeFile& file, const Block& block) {
-  const uint32_t setter = file.states[block.state_in][kSlotType];
-  if (setter == 0) return Feature::kCount;
-  return FeatureOfType(TypeIn(file.setters.Line(setter)));
+  return FeatureOfType(TypeOf(file, block));
 }
 
 Feature FeatureOf(const GcodeFile& file, const Block& block, bool closed) {

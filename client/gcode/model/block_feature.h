@@ -3,12 +3,17 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_BLOCK_FEATURE_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_BLOCK_FEATURE_H_
 
+#include <string_view>
+
 #include "client/gcode/dialects/feature.h"
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {
 
-// The feature named by the type in force at `block`; kCount if there is none, or it is unknown.
+// The name of the type in force at `block`; empty if there is none.
+std::string_view TypeOf(const GcodeFile& file, const Block& block);
+
+// The feature of that name; kCount if there is none, or it is unknown.
 Feature NamedFeature(const GcodeFile& file, const Block& block);
 
 // The feature of `block`: by its type, else by the comment on its first line (Slic3r with verbose

@@ -16,12 +16,8 @@ namespace {
 // Skin deposits at least this share of what fills its layer; slicers iron with half of it at most.
 constexpr double kLeastFilled = 0.6;
 
-// Segments looked at for each of a layer: far more than a printable layer needs.
-constexpr size_t kLooksPerLine = 250;
-
 bool IsSkinOrIroning(const GcodeFile& file, const Block& block) {
-  const uint32_t setter = file.states[block.state_in][kSlotType];
-  return setter != 0 && MayBeIroning(TypeIn(file.setters.Line(setter)));
+  return MayBeIroning(TypeOf(file, block));
 }
 
 double FilamentMm(const GcodeFile& file, const Block& block) {
@@ -128,16 +124,14 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
     if (usual < 0) usual = UsualFlow(file, layer, outlines);
     if (FlowOf(file, block) >= kLeastFilled * usual) continue;
     thin.push_back(path);
-    const std::vector<Point>& points = outlines[path].shape();
-    for (size_t k = 0; k + 1 < points.size(); ++k)
-      lines.push_back({points[k], points[k + 1], path});
+    AddSegments(outlines[path].shape(), path, lines);
   }
   if (thin.empty()) return;
   // Wider than any nozzle: what numbers may say, but nobody looks for that far.
   constexpr double kMostSpacingMm = 100;
   const double spacing = std::min(UsualSpacingMm(file, layer, usual), kMostSpacingMm);
   const SegmentGrid grid(std::move(lines));
-  size_t looks = kLooksPerLine * grid.segments().size();
+  size_t looks = SegmentGrid::kLooksPerSegment * grid.segments().size();
   for (const uint32_t path : thin) {
     const double share = FlowOf(file, file.blocks[layer.first_block + path]) / usual;
     // A line by itself has the room of one of the usual flow.

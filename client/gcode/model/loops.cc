@@ -11,10 +11,6 @@ namespace {
 
 constexpr size_t kProbes = 24;
 
-// Segments looked at for each of a layer: far more than a printable layer needs. Thousands of loops
-// in one place are told apart as far as this reaches; the others stay as they are named.
-constexpr size_t kLooksPerSegment = 250;
-
 // The neighbor's middle is a width away, or somewhat more. The verifier looks as far as 0.9 mm.
 constexpr double kReachWidths = 1.35;
 constexpr double kMostReachMm = 0.85;
@@ -83,29 +79,24 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
   std::vector<uint32_t> loops;  // the first path of each; its second one follows, if it has two
   std::vector<bool> in_two(outlines.size(), false);
   std::vector<Segment> segments;
-  const auto add = [&](uint32_t path, uint32_t loop) {
-    const std::vector<Point>& shape = outlines[path].shape();
-    for (size_t k = 0; k + 1 < shape.size(); ++k)
-      segments.push_back({shape[k], shape[k + 1], loop});
-  };
   for (uint32_t path = 0; path < outlines.size(); ++path) {
     in_two[path] = path + 1 < outlines.size() && AreLoopInTwo(file, layer, outlines, path);
     if (!in_two[path] && outlines[path].feature != Feature::kLoop) continue;
     loops.push_back(path);
-    add(path, path);
+    AddSegments(outlines[path].shape(), path, segments);
     if (!in_two[path]) continue;
-    add(path + 1, path);
+    AddSegments(outlines[path + 1].shape(), path, segments);
     outlines[path].feature = outlines[path + 1].feature = Feature::kLoop;
     ++path;
   }
   if (loops.empty()) return;
   const SegmentGrid grid(std::move(segments));
-  size_t looks = kLooksPerSegment * grid.segments().size();
+  size_t looks = SegmentGrid::kLooksPerSegment * grid.segments().size();
   for (const uint32_t loop : loops) {
     Probes probes;
     ProbeOutside(outlines[loop], loop, grid, looks, probes);
     if (in_two[loop]) ProbeOutside(outlines[loop + 1], loop, grid, looks, probes);
-    if (looks == 0) break;
+    if (looks == 0) break;  // the others stay as they are named
     if (!probes.IsInner()) continue;
     outlines[loop].feature = Feature::kInnerWall;
     if (in_two[loop]) outlines[loop + 1].feature = Feature::kInnerWall;

@@ -1,7 +1,8 @@
 #include "client/gcode/model/segment_grid.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 namespace {
@@ -35,22 +36,24 @@ double SquaredDistance(const Segment& s, const Segment& t) {
                    SquaredToPoint(t, s.b)});
 }
 
+void AddSegments(const std::vector<Point>& line, uint32_t path, std::vector<Segment>& segments) {
+  for (size_t k = 0; k + 1 < line.size(); ++k) segments.push_back({line[k], line[k + 1], path});
+}
+
 SegmentGrid::SegmentGrid(std::vector<Segment> segments, double cell_mm)
     : segments_(std::move(segments)), cell_(cell_mm) {
   if (segments_.empty()) return;
-  double max_x = -std::numeric_limits<double>::max();
-  double max_y = max_x;
-  min_x_ = min_y_ = -max_x;
+  BoundingBox box;
   double length = 0;
   for (const Segment& s : segments_) {
     length += Distance(s.a, s.b);
-    min_x_ = std::min({min_x_, s.a.x, s.b.x});
-    min_y_ = std::min({min_y_, s.a.y, s.b.y});
-    max_x = std::max({max_x, s.a.x, s.b.x});
-    max_y = std::max({max_y, s.a.y, s.b.y});
+    box.Add(s.a);
+    box.Add(s.b);
   }
-  const double width = max_x - min_x_;
-  const double height = max_y - min_y_;
+  min_x_ = box.low().x;
+  min_y_ = box.low().y;
+  const double width = box.width();
+  const double height = box.height();
   const size_t most_entries = kCellsPerSegment * (segments_.size() + 16);
   const auto most_cells = static_cast<double>(std::min(kMaxCells, most_entries));
   // More than a kilometer in one layer is none of a print.

@@ -28,6 +28,9 @@ double SquaredDistance(const Segment& s, const Segment& t);
 // True if the interiors of the segments cross at one point.
 bool Cross(Point a, Point b, Point c, Point d);
 
+// Adds those between the points of `line`, the shape of `path`.
+void AddSegments(const std::vector<Point>& line, uint32_t path, std::vector<Segment>& segments);
+
 // Built once; O(total length of the segments / cell size + cells / 64) in time and memory, where
 // the length is at most kCellsPerSegment cells for each segment.
 class SegmentGrid {
@@ -37,6 +40,10 @@ class SegmentGrid {
   static constexpr double kCellMm = 1;
   static constexpr size_t kMaxCells = size_t{1} << 22;
   static constexpr size_t kCellsPerSegment = 256;
+
+  // Segments to look at for each of a layer: far more than a printable layer needs. Where thousands
+  // of paths lie in one place, what is asked of them is told as far as this reaches.
+  static constexpr size_t kLooksPerSegment = 250;
 
   explicit SegmentGrid(std::vector<Segment> segments, double cell_mm = kCellMm);
 

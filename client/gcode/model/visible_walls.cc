@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "client/gcode/model/segment_grid.h"
 #include "client/gcode/model/wall_crowd.h"
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 
@@ -16,20 +16,12 @@ bool IsOne(const Outline& outline) {
 }
 
 WallCrowd NoCrowdYet(const std::vector<Outline>& outlines) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Point low{kFar, kFar};
-  Point high{-kFar, -kFar};
+  BoundingBox box;
   for (const Outline& outline : outlines) {
-    if (!IsOne(outline)) continue;
-    for (const Point& point : outline.shape()) {
-      low = {std::min(low.x, point.x), std::min(low.y, point.y)};
-      high = {std::max(high.x, point.x), std::max(high.y, point.y)};
-    }
+    if (IsOne(outline)) box.Add(BoundingBox(outline.shape()));
   }
-  return low.x <= high.x ? WallCrowd(low, high) : WallCrowd({0, 0}, {0, 0});
+  return box.empty() ? WallCrowd({0, 0}, {0, 0}) : WallCrowd(box.low(), box.high());
 }
-
-Segment SegmentOf(Point a, Point b) { return {{a.x, a.y}, {b.x, b.y}, 0}; }
 
 // What is left of the moves without the ends of their whole travel.
 std::vector<TravelLine> WithoutEnds(const std::vector<TravelLine>& moves) {
@@ -106,7 +98,7 @@ bool VisibleWalls::Touched(absl::Span<const Point> travel) const {
       const WallSegment& wall = grid_.segments()[s];
       const double half = half_mm_[wall.wall];
       const double mm =
-          std::sqrt(SquaredDistance(SegmentOf(line[i - 1], line[i]), SegmentOf(wall.a, wall.b)));
+          std::sqrt(SquaredDistance(Segment{line[i - 1], line[i]}, Segment{wall.a, wall.b}));
       if (mm >= half) return true;
       const auto nearer_than_first = [&](const std::vector<Point>& from, size_t leg) {
         return mm + kNearerMm < DistanceMm(wall.wall, from[0], half) ||
@@ -126,7 +118,7 @@ bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const W
   constexpr double kMostSteps = 10'000;  // farther than any printer moves
   // Less than bends keep off the middle of lines up to 0.7 mm wide.
   const double away_mm = half_mm + 0.05;
-  const Segment piece = SegmentOf(to.a, to.b);
+  const Segment piece{to.a, to.b};
   for (size_t i = 1; i <= leg; ++i) {
     const Point from = line[i - 1];
     const double dx = line[i].x - from.x;
@@ -135,7 +127,7 @@ bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const W
     for (double step = 0; step <= steps; ++step) {
       const double share = steps > 0 ? step / steps : 0;
       const Point at{from.x + dx * share, from.y + dy * share};
-      if (i == leg && SquaredDistance(SegmentOf(at, at), piece) < away_mm * away_mm) return false;
+      if (i == leg && SquaredDistance(Segment{at, at}, piece) < away_mm * away_mm) return false;
       if (DistanceMm(to.wall, at, away_mm) >= away_mm) return true;
     }
   }
@@ -143,12 +135,12 @@ bool VisibleWalls::ComesBack(const std::vector<Point>& line, size_t leg, const W
 }
 
 double VisibleWalls::DistanceMm(uint32_t wall, Point point, double most_mm) const {
-  const Segment at = SegmentOf(point, point);
+  const Segment at{point, point};
   double squared = most_mm * most_mm;
   const auto visit = [&](uint32_t s) {
     const WallSegment& near = grid_.segments()[s];
     if (near.wall == wall) {
-      squared = std::min(squared, SquaredDistance(at, SegmentOf(near.a, near.b)));
+      squared = std::min(squared, SquaredDistance(at, Segment{near.a, near.b}));
     }
     return true;
   };
@@ -158,11 +150,11 @@ double VisibleWalls::DistanceMm(uint32_t wall, Point point, double most_mm) cons
 
 bool VisibleWalls::IsOnOne(Point point) const {
   constexpr double kBesideMm = 0.05;
-  const Segment at{point, point, 0};
+  const Segment at{point, point};
   bool found = false;
   const auto visit = [&](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
-    found = SquaredDistance(at, SegmentOf(wall.a, wall.b)) <= kBesideMm * kBesideMm;
+    found = SquaredDistance(at, Segment{wall.a, wall.b}) <= kBesideMm * kBesideMm;
     return !found;
   };
   grid_.ForEachOnLine(point, point, visit, kBesideMm);

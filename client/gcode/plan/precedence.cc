@@ -16,10 +16,7 @@ constexpr double kNearInCells = 0.75;
 std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {
   std::vector<Segment> segments;
   for (size_t path = 0; path < outlines.size(); ++path) {
-    const std::vector<Point>& points = outlines[path].shape();
-    for (size_t k = 0; k + 1 < points.size(); ++k) {
-      segments.push_back(Segment{points[k], points[k + 1], static_cast<uint32_t>(path)});
-    }
+    AddSegments(outlines[path].shape(), static_cast<uint32_t>(path), segments);
   }
   return segments;
 }
