@@ -3,7 +3,6 @@
 #include <cstring>
 #include <optional>
 
-#include "client/gcode/text/digits.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -21,9 +20,8 @@ const char* SkipBlanks(const char* p, const char* end) {
   return p;
 }
 
-// Reads words up to `end` or a semicolon, in a line that begins at `line`. Returns where it
-// stopped; null if a word is unreadable.
-const char* ScanWords(const char* line, const char* p, const char* end, Command& command) {
+// Reads words up to `end` or a semicolon. Returns where it stopped; null if a word is unreadable.
+const char* ScanWords(const char* p, const char* end, Command& command) {
   command.words = 0;
   for (;;) {
     p = SkipBlanks(p, end);
@@ -33,11 +31,9 @@ const char* ScanWords(const char* line, const char* p, const char* end, Command&
     p = SkipBlanks(p, end);
     Decimal value = 0;
     if (p < end && IsNumberPart(*p)) {
-      if (!ParseShort(line, &p, end, value)) {
-        const std::optional<Decimal> number = ParseDecimal(&p, end);
-        if (!number) return nullptr;
-        value = *number;
-      }
+      const std::optional<Decimal> number = ParseDecimal(&p, end);
+      if (!number) return nullptr;
+      value = *number;
     }
     command.words |= Command::Bit(letter);
     command.values[letter - 'A'] = value;
@@ -79,7 +75,7 @@ void LexLine(std::string_view text, Command& command) {
   const char* const rest = p;
   const char* stop;
   if (HasCoordinates(command)) {
-    stop = ScanWords(text.data(), p, end, command);
+    stop = ScanWords(p, end, command);
     if (stop == nullptr) return;
   } else {
     const void* const semicolon = std::memchr(p, ';', static_cast<size_t>(end - p));
@@ -93,7 +89,7 @@ void LexLine(std::string_view text, Command& command) {
 bool ReadWords(Command& command) {
   const char* const begin = command.rest.data();
   const char* const end = begin + command.rest.size();
-  if (ScanWords(begin, begin, end, command) == end) return true;
+  if (ScanWords(begin, end, command) == end) return true;
   command.words = 0;
   return false;
 }

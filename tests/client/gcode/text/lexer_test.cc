@@ -54,8 +54,7 @@ TEST(LexLine, ReadsTheWordsOfMoves) {
   EXPECT_EQ(c.comment, "; perimeter");
 }
 
-// Numbers of up to seven digits before and behind the point are read at once, others digit by
-// digit; wherever a number stands in its line, and whatever stands beside it.
+// Wherever a number stands in its line, and whatever stands beside it.
 TEST(LexLine, ReadsNumbersOfAllLengthsAlike) {
   const std::string digits = "9182736450";
   for (size_t whole = 0; whole <= 9; ++whole) {
