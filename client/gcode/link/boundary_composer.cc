@@ -91,14 +91,14 @@ void LinkComposer::ComposeBoundary() {
     if (!as_given && link.retracts()) DepartAsOwn();
   }
   const std::shared_ptr<const Link> own = link.arrival >= 0 ? OwnArrival(link) : nullptr;
-  const ExchangedLabels labels(file_, link, boundary, from_.placement().block,
-                               to_.placement().block);
+  const std::vector<std::string_view> labelled =
+      LabelledLines(file_, link, boundary, from_.placement().block, to_.placement().block);
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     const StepKind kind = link.steps[i].kind;
     if (i == sets && i > link.fixed) link_.Set(travel, kDynamicsSlots);
     if (kind == StepKind::kProgress && form_.without_progress) continue;
     if (kind == StepKind::kLabel || kind == StepKind::kStay || kind == StepKind::kSays) {
-      link_.Raw(labels.LineOf(i));
+      link_.Raw(labelled[i]);
     } else if (static_cast<int>(i) != link.arrival) {
       if (own == nullptr || link.Leaves(i) || !Arrives(kind)) ComposeBoundaryStep(link, i);
     } else if (like) {

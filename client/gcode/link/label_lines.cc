@@ -1,6 +1,7 @@
 #include "client/gcode/link/label_lines.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "client/gcode/dialects/label.h"
 #include "client/gcode/text/text.h"
@@ -13,40 +14,26 @@ Label LabelOfStep(const GcodeFile& file, const LinkStep& step) {
   return LabelOf(TrimBlanks(step.line.Text(file.text)));
 }
 
-// What the lines `steps` of `link` begin with; nothing if some of them stand among those that stay.
-std::vector<std::string_view> Notations(const GcodeFile& file, const Link& link,
-                                        const std::vector<size_t>& steps, bool& stays) {
-  std::vector<std::string_view> notations;
-  for (const size_t i : steps) {
-    stays = stays || i < link.fixed;
-    notations.push_back(LabelOfStep(file, link.steps[i]).notation);
-  }
-  return notations;
-}
+// Steps of a link that name an object, and messages and the like that stand right beside these,
+// within the object.
+struct ObjectLines {
+  std::vector<size_t> steps;
+  bool apart = false;  // something that stays stands within the object, but not beside its label
+};
 
-bool Alike(const GcodeFile& file, uint32_t one, uint32_t other, bool begins) {
-  if (one == other) return true;
-  const Link link = ReadLink(file, one);
-  const Link other_link = ReadLink(file, other);
-  const LabelLines lines = LabelLinesOf(file, link);
-  const LabelLines others = LabelLinesOf(file, other_link);
-  bool stays = false;
-  const auto mine = Notations(file, link, begins ? lines.begins : lines.ends, stays);
-  const auto theirs = Notations(file, other_link, begins ? others.begins : others.ends, stays);
-  for (const LabelLines& found : {lines, others}) {
-    stays = stays || (begins ? found.apart_in_behind : found.apart_in_before);
-  }
-  return !stays && mine == theirs && (!begins || !mine.empty());
-}
+struct LabelLines {
+  ObjectLines before;  // they end the object before, ahead of all that begin one
+  ObjectLines behind;  // they begin the object behind, after all that end one
+};
 
-}  // namespace
+using Side = ObjectLines LabelLines::*;
 
 LabelLines LabelLinesOf(const GcodeFile& file, const Link& link) {
   LabelLines lines;
   bool begun = false;
-  bool at_begin = false;       // nothing but such lines stands between this step and a label
-  std::vector<size_t> beside;  // such lines directly before this step
-  bool* apart = &lines.apart_in_before;  // in what this step stands; null: in no object
+  bool at_begin = false;              // nothing but such lines stands between this step and a label
+  std::vector<size_t> beside;         // such lines directly before this step
+  bool* apart = &lines.before.apart;  // in what this step stands; null: in no object
   const auto leave = [&] {
     for (const size_t i : beside) {
       if (apart != nullptr && link.steps[i].kind == StepKind::kStay) *apart = true;
@@ -57,29 +44,57 @@ LabelLines LabelLinesOf(const GcodeFile& file, const Link& link) {
     const StepKind kind = link.steps[i].kind;
     if (kind == StepKind::kBlank || kind == StepKind::kComment || kind == StepKind::kSlot) continue;
     if (kind == StepKind::kStay || kind == StepKind::kSays) {
-      (at_begin ? lines.begins : beside).push_back(i);
+      (at_begin ? lines.behind.steps : beside).push_back(i);
       continue;
     }
     const Label label = LabelOfStep(file, link.steps[i]);
     if (label.kind == LabelKind::kEnds && !begun && label.named) {
-      lines.ends.insert(lines.ends.end(), beside.begin(), beside.end());
-      lines.ends.push_back(i);
+      lines.before.steps.insert(lines.before.steps.end(), beside.begin(), beside.end());
+      lines.before.steps.push_back(i);
       beside.clear();
     }
     leave();
     at_begin = label.kind == LabelKind::kBegins;
     if (at_begin) {
       begun = true;
-      lines.begins.push_back(i);
-      apart = &lines.apart_in_behind;
+      lines.behind.steps.push_back(i);
+      apart = &lines.behind.apart;
     } else if (label.kind == LabelKind::kEnds || kind == StepKind::kLayerMark) {
-      if (label.kind == LabelKind::kEnds) lines.begins.clear();
+      if (label.kind == LabelKind::kEnds) lines.behind.steps.clear();
       apart = nullptr;
     }
   }
   leave();
   return lines;
 }
+
+// What the lines of one side of the link before block `block` begin with; unset if some of them, or
+// something apart from them, stay.
+std::optional<std::vector<std::string_view>> NotationsOf(const GcodeFile& file, uint32_t block,
+                                                         Side side) {
+  const Link link = ReadLink(file, block);
+  const ObjectLines lines = LabelLinesOf(file, link).*side;
+  std::vector<std::string_view> notations;
+  bool stays = lines.apart;
+  for (const size_t i : lines.steps) {
+    stays = stays || i < link.fixed;
+    notations.push_back(LabelOfStep(file, link.steps[i]).notation);
+  }
+  if (stays) return std::nullopt;
+  return notations;
+}
+
+// The first block behind the object that `block` is of.
+uint32_t ObjectEnd(const GcodeFile& file, uint32_t block) {
+  const uint32_t object = file.blocks[block].object;
+  do {
+    ++block;
+  } while (block < file.blocks.size() && (file.blocks[block].link & kLinkNewLayer) == 0 &&
+           file.blocks[block].object == object);
+  return block;
+}
+
+}  // namespace
 
 uint32_t ObjectBegin(const GcodeFile& file, uint32_t block) {
   const uint32_t object = file.blocks[block].object;
@@ -90,37 +105,26 @@ uint32_t ObjectBegin(const GcodeFile& file, uint32_t block) {
   return block;
 }
 
-uint32_t ObjectEnd(const GcodeFile& file, uint32_t block) {
-  const uint32_t object = file.blocks[block].object;
-  do {
-    ++block;
-  } while (block < file.blocks.size() && (file.blocks[block].link & kLinkNewLayer) == 0 &&
-           file.blocks[block].object == object);
-  return block;
-}
-
-ExchangedLabels::ExchangedLabels(const GcodeFile& file, const Link& link, uint32_t place,
-                                 uint32_t from, uint32_t to)
-    : file_(file), link_(link), lines_(LabelLinesOf(file, link)), other_(link.steps.size()) {
+std::vector<std::string_view> LabelledLines(const GcodeFile& file, const Link& link, uint32_t place,
+                                            uint32_t from, uint32_t to) {
+  std::vector<std::string_view> lines;
+  for (const LinkStep& step : link.steps) lines.push_back(step.line.Raw(file.text));
+  const auto exchange = [&](uint32_t other, Side side) {
+    if (other >= file.blocks.size()) return;
+    const Link other_link = ReadLink(file, other);
+    const std::vector<size_t> mine = (LabelLinesOf(file, link).*side).steps;
+    const std::vector<size_t> theirs = (LabelLinesOf(file, other_link).*side).steps;
+    for (size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
+      lines[mine[k]] = other_link.steps[theirs[k]].line.Raw(file.text);
+    }
+  };
   if (file.blocks[place - 1].object != file.blocks[from].object) {
-    Exchange(ObjectEnd(file, from), false);
+    exchange(ObjectEnd(file, from), &LabelLines::before);
   }
-  if (file.blocks[place].object != file.blocks[to].object) Exchange(ObjectBegin(file, to), true);
-}
-
-void ExchangedLabels::Exchange(uint32_t other, bool begins) {
-  if (other >= file_.blocks.size()) return;
-  const Link link = ReadLink(file_, other);
-  const LabelLines lines = LabelLinesOf(file_, link);
-  const std::vector<size_t>& theirs = begins ? lines.begins : lines.ends;
-  const std::vector<size_t>& mine = begins ? lines_.begins : lines_.ends;
-  for (size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
-    other_[mine[k]] = link.steps[theirs[k]].line.Raw(file_.text);
+  if (file.blocks[place].object != file.blocks[to].object) {
+    exchange(ObjectBegin(file, to), &LabelLines::behind);
   }
-}
-
-std::string_view ExchangedLabels::LineOf(size_t i) const {
-  return other_[i].empty() ? link_.steps[i].line.Raw(file_.text) : other_[i];
+  return lines;
 }
 
 bool SaysLabelsOnly(const GcodeFile& file, uint32_t block) {
@@ -133,11 +137,16 @@ bool SaysLabelsOnly(const GcodeFile& file, uint32_t block) {
 }
 
 bool BeginsAlike(const GcodeFile& file, uint32_t one, uint32_t other) {
-  return Alike(file, one, other, true);
+  if (one == other) return true;
+  const auto notations = NotationsOf(file, one, &LabelLines::behind);
+  return notations && !notations->empty() &&
+         notations == NotationsOf(file, other, &LabelLines::behind);
 }
 
 bool EndsAlike(const GcodeFile& file, uint32_t one, uint32_t other) {
-  return Alike(file, one, other, false);
+  if (one == other) return true;
+  const auto notations = NotationsOf(file, one, &LabelLines::before);
+  return notations && notations == NotationsOf(file, other, &LabelLines::before);
 }
 
 }  // namespace traverse::gcode
