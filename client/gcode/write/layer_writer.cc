@@ -91,8 +91,8 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
   std::string bare;
   std::vector<size_t> marks;
   const PartStart behind = WriteBarePaths(order, start, bare, &marks, as_sliced);
-  ProgressLines(file_, layer_, MovesObjects(order, PlacesOf(order)))
-      .Insert(bare, start, marks, text);
+  InsertProgressLines(file_, layer_, MovesObjects(order, PlacesOf(order)), bare, start, marks,
+                      text);
   for (size_t i = 1; ends != nullptr && i < marks.size(); i += 2) ends->push_back(marks[i]);
   return behind;
 }

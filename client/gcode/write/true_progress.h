@@ -1,9 +1,10 @@
 // Lines of progress whose layers saved more, or less, than the rest of the print.
 //
-// ProgressLines (progress_lines.h) keeps each line in its layer, where as large a share of that is
-// over as in the file. Where layers differ in what they save, that is not where as large a share of
-// the print, with its end script, is over. What then is off by more than a hundredth of the print
-// time goes there, whatever layer that is in; what says of a layer which one it is stays in it.
+// InsertProgressLines (progress_lines.h) keeps each line in its layer, where as large a share of
+// that is over as in the file. Where layers differ in what they save, that is not where as large a
+// share of the print, with its end script, is over. What then is off by more than a hundredth of
+// the print time goes there, whatever layer that is in; what says of a layer which one it is stays
+// in it.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_TRUE_PROGRESS_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_TRUE_PROGRESS_H_
