@@ -20,34 +20,32 @@ struct Setting {
   std::string_view section;
   std::string_view key;
   LimitField field;
-  Range range = Range::kAboveZero;
+  Range range = kAboveZero;
   bool lowers = false;  // the field may also be set by others; the least value counts
 };
 
 constexpr Setting kSettings[] = {
     {"printer", "max_velocity", &MachineLimits::max_speed},
     {"printer", "max_accel", &MachineLimits::max_accel},
-    {"printer", "square_corner_velocity", &MachineLimits::corner_speed, Range::kFromZero},
-    {"printer", "minimum_cruise_ratio", &MachineLimits::cruise_ratio, Range::kRatio},
+    {"printer", "square_corner_velocity", &MachineLimits::corner_speed, kFromZero},
+    {"printer", "minimum_cruise_ratio", &MachineLimits::cruise_ratio, kRatio},
     {"printer", "max_z_velocity", &MachineLimits::max_z_speed},
     {"printer", "max_z_accel", &MachineLimits::z_accel},
     // Of kinematics that limit each axis. Moves lead anywhere: the slower axis counts.
-    {"printer", "max_x_velocity", &MachineLimits::max_speed, Range::kAboveZero, true},
-    {"printer", "max_y_velocity", &MachineLimits::max_speed, Range::kAboveZero, true},
-    {"printer", "max_x_accel", &MachineLimits::max_accel, Range::kAboveZero, true},
-    {"printer", "max_y_accel", &MachineLimits::max_accel, Range::kAboveZero, true},
+    {"printer", "max_x_velocity", &MachineLimits::max_speed, kAboveZero, true},
+    {"printer", "max_y_velocity", &MachineLimits::max_speed, kAboveZero, true},
+    {"printer", "max_x_accel", &MachineLimits::max_accel, kAboveZero, true},
+    {"printer", "max_y_accel", &MachineLimits::max_accel, kAboveZero, true},
     {"extruder", "nozzle_diameter", &MachineLimits::nozzle_diameter},
     {"extruder", "filament_diameter", &MachineLimits::filament_diameter},
     {"extruder", "max_extrude_only_velocity", &MachineLimits::max_e_speed},
     {"extruder", "max_extrude_only_accel", &MachineLimits::retract_accel},
-    {"extruder", "instantaneous_corner_velocity", &MachineLimits::extruder_corner_speed,
-     Range::kFromZero},
-    {"firmware_retraction", "retract_length", &MachineLimits::firmware_retract_length,
-     Range::kFromZero},
+    {"extruder", "instantaneous_corner_velocity", &MachineLimits::extruder_corner_speed, kFromZero},
+    {"firmware_retraction", "retract_length", &MachineLimits::firmware_retract_length, kFromZero},
     {"firmware_retraction", "retract_speed", &MachineLimits::firmware_retract_speed},
     {"firmware_retraction", "unretract_speed", &MachineLimits::firmware_prime_speed},
     {"firmware_retraction", "unretract_extra_length", &MachineLimits::firmware_prime_extra,
-     Range::kFromZero},
+     kFromZero},
     {"gcode_arcs", "resolution", &MachineLimits::arc_chord},
 };
 
@@ -91,7 +89,7 @@ class KlipperReader {
     const std::string key = absl::AsciiStrToLower(std::string(TrimBlanks(line.substr(0, mark))));
     const std::string value(TrimBlanks(line.substr(mark + 1)));
     if (section_ == "printer" && key == "max_accel_to_decel") {
-      return Set(value, key, number, Range::kAboveZero, accel_to_decel_);
+      return Set(value, key, number, kAboveZero, accel_to_decel_);
     }
     for (const Setting& setting : kSettings) {
       if (section_ != setting.section || key != setting.key) continue;
@@ -143,12 +141,12 @@ class KlipperReader {
     return absl::OkStatus();
   }
 
-  absl::Status Set(const std::string& text, const std::string& key, int number, Range range,
+  absl::Status Set(const std::string& text, const std::string& key, int number, const Range& range,
                    std::optional<double>& field) const {
     double value = 0;
-    if (!absl::SimpleAtod(text, &value) || !Holds(range, value)) {
+    if (!absl::SimpleAtod(text, &value) || !range.holds(value)) {
       return LimitFault(LineOf(name_, number),
-                        absl::StrFormat("%s: \"%s\" is %s", key, text, NameOf(range)));
+                        absl::StrFormat("%s: \"%s\" is %s", key, text, range.fault));
     }
     field = value;
     return absl::OkStatus();

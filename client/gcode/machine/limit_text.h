@@ -34,11 +34,19 @@ absl::Status ForEachLine(std::string_view text, Visit visit) {
 // finite.
 inline constexpr double kGreatestLimit = 1e9;
 
-// Which values a setting may have.
-enum class Range { kAboveZero, kFromZero, kRatio };
-bool Holds(Range range, double value);
-// "not a number above 0 and up to 1e9" and so on.
-const char* NameOf(Range range);
+// Which values a setting may have, and what others are.
+struct Range {
+  bool (*holds)(double value);
+  const char* fault;
+};
+inline constexpr Range kAboveZero = {
+    [](double value) { return value > 0 && value <= kGreatestLimit; },
+    "not a number above 0 and up to 1e9"};
+inline constexpr Range kFromZero = {
+    [](double value) { return value >= 0 && value <= kGreatestLimit; },
+    "not a number from 0 to 1e9"};
+inline constexpr Range kRatio = {[](double value) { return value >= 0 && value < 1; },
+                                 "not a number from 0 to below 1"};
 
 using LimitField = std::optional<double> MachineLimits::*;
 

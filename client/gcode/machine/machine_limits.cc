@@ -26,7 +26,7 @@ struct Word {
   int number;
   char letter;
   LimitField field;
-  Range range = Range::kAboveZero;
+  Range range = kAboveZero;
   double per_second = 1;  // 60 where it counts mm/min
 };
 constexpr Word kWords[] = {
@@ -48,12 +48,12 @@ constexpr Word kWords[] = {
     {205, 'X', &MachineLimits::corner_speed},
     {205, 'Y', &MachineLimits::corner_speed},
     {205, 'J', &MachineLimits::junction_deviation},
-    {207, 'S', &MachineLimits::firmware_retract_length, Range::kFromZero},
-    {207, 'F', &MachineLimits::firmware_retract_speed, Range::kAboveZero, 60},
-    {208, 'S', &MachineLimits::firmware_prime_extra, Range::kFromZero},
-    {208, 'F', &MachineLimits::firmware_prime_speed, Range::kAboveZero, 60},
-    {566, 'X', &MachineLimits::corner_speed, Range::kAboveZero, 60},
-    {566, 'Y', &MachineLimits::corner_speed, Range::kAboveZero, 60},
+    {207, 'S', &MachineLimits::firmware_retract_length, kFromZero},
+    {207, 'F', &MachineLimits::firmware_retract_speed, kAboveZero, 60},
+    {208, 'S', &MachineLimits::firmware_prime_extra, kFromZero},
+    {208, 'F', &MachineLimits::firmware_prime_speed, kAboveZero, 60},
+    {566, 'X', &MachineLimits::corner_speed, kAboveZero, 60},
+    {566, 'Y', &MachineLimits::corner_speed, kAboveZero, 60},
 };
 
 class MarlinReader {
@@ -111,9 +111,9 @@ class MarlinReader {
     for (const Word& word : kWords) {
       if (command.number != word.number || !command.Has(word.letter)) continue;
       const double value = ToDouble(command.Value(word.letter));
-      if (!Holds(word.range, value)) {
+      if (!word.range.holds(value)) {
         return LimitFault(LineOf(name_, number), absl::StrFormat("M%d %c: %s", word.number,
-                                                                 word.letter, NameOf(word.range)));
+                                                                 word.letter, word.range.fault));
       }
       std::optional<double>& field = limits_.*word.field;
       const double per_second = duet_ && command.number == 203 ? 60 : word.per_second;
@@ -134,12 +134,7 @@ class MarlinReader {
 
 // A section: a line that begins with a bracket.
 bool LooksLikeKlipper(std::string_view text) {
-  bool found = false;
-  const absl::Status all = ForEachLine(text, [&found](std::string_view line, int) {
-    found = found || line.starts_with("[");
-    return absl::OkStatus();
-  });
-  return all.ok() && found;
+  return text.starts_with('[') || text.find("\n[") != std::string_view::npos;
 }
 
 }  // namespace
