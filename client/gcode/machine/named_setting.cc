@@ -1,5 +1,6 @@
 #include "client/gcode/machine/named_setting.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,42 +10,35 @@
 namespace traverse::gcode {
 namespace {
 
-// FNV-1a.
-SlotMask SlotIn(std::string_view name, Slot first, uint64_t count) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return SlotBit(static_cast<Slot>(first + (hash >> 32) % count));
-}
-
 struct KlipperSetting {
   std::string_view command;
   std::string_view name;        // the parameter that names what is set; empty if none does
   std::string_view parameters;  // each that it may have, between blanks
-  NamedKind kind;
+  Slot first;                   // of its kind
 };
 
 constexpr KlipperSetting kOfKlipper[] = {
-    {"SET_FAN_SPEED", "FAN", " FAN SPEED ", NamedKind::kFan},
-    {"SET_LED", "LED", " LED RED GREEN BLUE WHITE SYNC TRANSMIT ", NamedKind::kLight},
-    {"SET_TMC_CURRENT", "STEPPER", " STEPPER CURRENT HOLDCURRENT ", NamedKind::kCurrent},
+    {"SET_FAN_SPEED", "FAN", " FAN SPEED ", kSlotNamedFan},
+    {"SET_LED", "LED", " LED RED GREEN BLUE WHITE SYNC TRANSMIT ", kSlotNamedLight},
+    {"SET_TMC_CURRENT", "STEPPER", " STEPPER CURRENT HOLDCURRENT ", kSlotNamedCurrent},
     {"SET_INPUT_SHAPER", "",
      " SHAPER_FREQ_X SHAPER_FREQ_Y SHAPER_TYPE SHAPER_TYPE_X SHAPER_TYPE_Y DAMPING_RATIO_X "
      "DAMPING_RATIO_Y ",
-     NamedKind::kShaper},
+     kSlotNamedShaper},
 };
 
 struct CommandSetting {
   int number = 0;
   std::string_view names;  // letters whose values name what is set
   std::string_view words;  // letters that it may have
-  NamedKind kind;
+  Slot first;              // of its kind
 };
 
 constexpr CommandSetting kOfCommands[] = {
-    {150, "", "RUWPB", NamedKind::kLight},
-    {355, "", "SP", NamedKind::kLight},  // of the case
-    {593, "", "XYFD", NamedKind::kShaper},
-    {960, "S", "SP", NamedKind::kLight},  // of Bambu Lab's printers
+    {150, "", "RUWPB", kSlotNamedLight},
+    {355, "", "SP", kSlotNamedLight},  // of the case
+    {593, "", "XYFD", kSlotNamedShaper},
+    {960, "S", "SP", kSlotNamedLight},  // of Bambu Lab's printers
 };
 
 bool Among(std::string_view parameters, std::string_view name) {
@@ -72,18 +66,20 @@ std::optional<std::string> NameOf(const KlipperSetting& setting, std::string_vie
 
 }  // namespace
 
-SlotMask SlotOfName(std::string_view name, NamedKind kind) {
-  constexpr Slot kFirst[] = {kSlotNamedFan,     kSlotNamedTool,  kSlotNamedShaper,
+SlotMask SlotOfName(std::string_view name, Slot first) {
+  constexpr Slot kKinds[] = {kSlotNamedFan,     kSlotNamedTool,  kSlotNamedShaper,
                              kSlotNamedCurrent, kSlotNamedLight, kSlotCount};
-  const auto k = static_cast<size_t>(kind);
-  return SlotIn(name, kFirst[k], kFirst[k + 1] - kFirst[k]);
+  const auto count = static_cast<uint64_t>(*std::ranges::upper_bound(kKinds, first) - first);
+  uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return SlotBit(static_cast<Slot>(first + (hash >> 32) % count));
 }
 
 SlotMask NamedTextSlots(std::string_view command, std::string_view parameters) {
   for (const KlipperSetting& setting : kOfKlipper) {
     if (setting.command != command) continue;
     const auto name = NameOf(setting, parameters);
-    return name ? SlotOfName(*name, setting.kind) : 0;
+    return name ? SlotOfName(*name, setting.first) : 0;
   }
   return 0;
 }
@@ -106,7 +102,7 @@ SlotMask NamedCommandSlots(Command& command) {
     for (const char letter : setting.names) {
       if (!command.Has(letter)) return 0;
     }
-    return sets ? SlotOfName(name, setting.kind) : 0;
+    return sets ? SlotOfName(name, setting.first) : 0;
   }
   return 0;
 }

@@ -20,11 +20,9 @@ namespace traverse::gcode {
 SlotMask NamedTextSlots(std::string_view command, std::string_view parameters);
 SlotMask NamedCommandSlots(Command& command);
 
-// What has names of its own, each kind with slots of its own.
-enum class NamedKind { kFan, kTool, kShaper, kCurrent, kLight };
-
-// The slot of what is called `name`, for settings that are known elsewhere.
-SlotMask SlotOfName(std::string_view name, NamedKind kind);
+// The slot of what is called `name`, for settings that are known elsewhere; `first` is the first
+// slot of its kind.
+SlotMask SlotOfName(std::string_view name, Slot first);
 
 }  // namespace traverse::gcode
 

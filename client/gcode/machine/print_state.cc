@@ -36,7 +36,7 @@ SlotMask FanSlots(Command& command) {
   if (others != 0) return 0;
   const Decimal fan = command.Has('P') ? command.Value('P') / kDecimalOne : 0;
   if (fan < 0) return 0;
-  if (fan > 3) return SlotOfName(absl::StrCat("M106 P", fan), NamedKind::kFan);
+  if (fan > 3) return SlotOfName(absl::StrCat("M106 P", fan), kSlotNamedFan);
   return SlotBit(static_cast<Slot>(kSlotFan + fan));
 }
 
@@ -45,7 +45,7 @@ SlotMask FanSlots(Command& command) {
 SlotMask OfTool(Command& command, SlotMask slots, char tool) {
   if (slots == 0 || !command.Has(tool)) return slots;
   return slots |
-         SlotOfName(absl::StrCat("M", command.number, " ", command.Value(tool)), NamedKind::kTool);
+         SlotOfName(absl::StrCat("M", command.number, " ", command.Value(tool)), kSlotNamedTool);
 }
 
 // Repetier's, as CuraEngine writes it; elsewhere M207 says how G10 retracts, by S and F.
@@ -140,9 +140,9 @@ SlotMask PressureSlots(std::string_view rest) {
   SlotMask of_extruder = 0;
   for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
     if (parameter.starts_with("SMOOTH_TIME=")) {
-      slots |= SlotOfName("SMOOTH_TIME", NamedKind::kTool);
+      slots |= SlotOfName("SMOOTH_TIME", kSlotNamedTool);
     } else if (parameter.starts_with("EXTRUDER=")) {
-      of_extruder = SlotOfName(parameter, NamedKind::kTool);
+      of_extruder = SlotOfName(parameter, kSlotNamedTool);
     } else {
       slots |= SlotBit(kSlotPressure);
     }
