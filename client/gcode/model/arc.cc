@@ -15,38 +15,39 @@ constexpr double kMostLinesOfLong = 16;
 
 // In the unit of the words, relative to the arc's start.
 struct Circle {
-  double i = 0;  // the center
-  double j = 0;
+  Point end;
+  Point center;
   double radius = 0;
   double turn = 1;   // -1: clockwise
   double angle = 0;  // from the first end to the last, as it turns; radians, above 0
 };
 
-// The center of the arc relative to its start.
-void CenterOffset(const Command& command, double dx, double dy, double& i, double& j) {
-  i = command.Has('I') ? ToDouble(command.Value('I')) : 0;
-  j = command.Has('J') ? ToDouble(command.Value('J')) : 0;
-  if (command.Has('I') || command.Has('J') || !command.Has('R')) return;
+Point CenterOf(const Command& command, Point end) {
+  if (command.Has('I') || command.Has('J')) {
+    return {command.Has('I') ? ToDouble(command.Value('I')) : 0,
+            command.Has('J') ? ToDouble(command.Value('J')) : 0};
+  }
   // R: the center lies on the chord's bisector, on the right of a G2's chord; negative R: the long
   // way round.
-  const double radius = ToDouble(command.Value('R'));
-  const double chord = std::hypot(dx, dy);
-  if (!(chord > 0)) return;
+  const double radius = command.Has('R') ? ToDouble(command.Value('R')) : 0;
+  const double chord = std::hypot(end.x, end.y);
+  if (!command.Has('R') || !(chord > 0)) return {};
   const double height = std::sqrt(std::max(radius * radius - chord * chord / 4, 0.0));
   const double side = (command.number == 2) == (radius > 0) ? 1 : -1;
-  i = dx / 2 + side * height * dy / chord;
-  j = dy / 2 - side * height * dx / chord;
+  return {end.x / 2 + side * height * end.y / chord, end.y / 2 - side * height * end.x / chord};
 }
 
-Circle CircleOf(const Command& command, double dx, double dy) {
+Circle CircleOf(const Command& command, const Position& from, const Position& to) {
   Circle circle;
-  CenterOffset(command, dx, dy, circle.i, circle.j);
-  circle.radius = std::hypot(circle.i, circle.j);
+  circle.end = {ToDouble(to.x - from.x), ToDouble(to.y - from.y)};
+  circle.center = CenterOf(command, circle.end);
+  circle.radius = std::hypot(circle.center.x, circle.center.y);
   circle.turn = command.number == 2 ? -1 : 1;
   // From the radius of the start to that of the end. Of two angles of their own one could be pi and
   // the other -pi.
-  const double cross = circle.j * (dx - circle.i) - circle.i * (dy - circle.j);
-  const double dot = -circle.i * (dx - circle.i) - circle.j * (dy - circle.j);
+  const auto [i, j] = circle.center;
+  const double cross = j * (circle.end.x - i) - i * (circle.end.y - j);
+  const double dot = -i * (circle.end.x - i) - j * (circle.end.y - j);
   circle.angle = circle.turn * std::atan2(cross, dot);
   if (circle.angle <= 1e-9) circle.angle += 2 * std::numbers::pi;
   return circle;
@@ -58,9 +59,9 @@ std::vector<Point> Parted(const Circle& circle, const Position& from, double uni
   const double radius_mm = circle.radius * unit_mm;
   const double most = circle.angle * radius_mm > kLongMm ? kMostLinesOfLong : kMostLines;
   const int parts = static_cast<int>(std::min(lines, most));
-  const double first = std::atan2(-circle.j, -circle.i);
-  const double center_x = (ToDouble(from.x) + circle.i) * unit_mm;
-  const double center_y = (ToDouble(from.y) + circle.j) * unit_mm;
+  const double first = std::atan2(-circle.center.y, -circle.center.x);
+  const double center_x = (ToDouble(from.x) + circle.center.x) * unit_mm;
+  const double center_y = (ToDouble(from.y) + circle.center.y) * unit_mm;
   std::vector<Point> points;
   for (int k = 1; k < parts; ++k) {
     const double angle = first + circle.turn * circle.angle * k / parts;
@@ -74,14 +75,12 @@ std::vector<Point> Parted(const Circle& circle, const Position& from, double uni
 
 double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
                  double directions[4]) {
-  const double dx = ToDouble(to.x - from.x);
-  const double dy = ToDouble(to.y - from.y);
-  const Circle circle = CircleOf(command, dx, dy);
+  const Circle circle = CircleOf(command, from, to);
   if (directions != nullptr && circle.radius > 0) {
-    directions[0] = circle.turn * circle.j / circle.radius;
-    directions[1] = -circle.turn * circle.i / circle.radius;
-    directions[2] = -circle.turn * (dy - circle.j) / circle.radius;
-    directions[3] = circle.turn * (dx - circle.i) / circle.radius;
+    directions[0] = circle.turn * circle.center.y / circle.radius;
+    directions[1] = -circle.turn * circle.center.x / circle.radius;
+    directions[2] = -circle.turn * (circle.end.y - circle.center.y) / circle.radius;
+    directions[3] = circle.turn * (circle.end.x - circle.center.x) / circle.radius;
   }
   return circle.angle * circle.radius * unit_mm;
 }
@@ -96,7 +95,7 @@ double StepLengthMm(const Step& step, const MachineState& after) {
 
 std::vector<Point> ArcPoints(const Command& command, const Position& from, const Position& to,
                              double unit_mm, double tolerance_mm) {
-  const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+  const Circle circle = CircleOf(command, from, to);
   const double radius_mm = circle.radius * unit_mm;
   if (!(radius_mm > tolerance_mm)) return {};
   // A line within the arc misses it by the radius times 1 - cos(half its angle).
@@ -106,7 +105,7 @@ std::vector<Point> ArcPoints(const Command& command, const Position& from, const
 
 std::vector<Point> ArcChords(const Command& command, const Position& from, const Position& to,
                              double unit_mm, double lines) {
-  const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+  const Circle circle = CircleOf(command, from, to);
   return Parted(circle, from, unit_mm, lines);
 }
 
@@ -114,11 +113,10 @@ bool EndsOnItsCircle(const Command& command, const Position& from, const Positio
                      double unit_mm) {
   constexpr double kMaxOffMm = 0.02;
   if (!command.Has('I') && !command.Has('J')) return true;
-  const double i = command.Has('I') ? ToDouble(command.Value('I')) : 0;
-  const double j = command.Has('J') ? ToDouble(command.Value('J')) : 0;
-  const double x = ToDouble(to.x - from.x) - i;
-  const double y = ToDouble(to.y - from.y) - j;
-  return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit_mm <= kMaxOffMm;
+  const Point end{ToDouble(to.x - from.x), ToDouble(to.y - from.y)};
+  const Point center = CenterOf(command, end);
+  const double end_radius = std::hypot(end.x - center.x, end.y - center.y);
+  return std::abs(std::hypot(center.x, center.y) - end_radius) * unit_mm <= kMaxOffMm;
 }
 
 }  // namespace traverse::gcode
