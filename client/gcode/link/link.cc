@@ -27,20 +27,11 @@ bool SaysNothing(const LinkStep& step) {
 }
 
 // How a link first pulls filament back, before any travel and whatever mark stands before that.
-struct Pull {
+struct Pull : Retraction {
   std::vector<LinkStep> steps;
   size_t begin = 0;  // the first and the last of them are steps [begin, end) of the link
   size_t end = 0;
-  Decimal pulled = 0;
-  bool wipes = false;
-  bool firmware = false;
   bool behind_marks = false;  // or behind other steps
-
-  bool any() const { return pulled > 0 || firmware; }
-  bool Replaces(const Pull& other) const {
-    return any() && other.any() && firmware == other.firmware &&
-           std::abs(pulled - other.pulled) <= kRetractionSlack;
-  }
 };
 
 Pull PullOf(const Link& link) {
@@ -55,7 +46,7 @@ Pull PullOf(const Link& link) {
       pull.pulled -= step.filament;
       pull.wipes = pull.wipes || step.kind == StepKind::kWipe;
       pull.firmware = pull.firmware || step.kind == StepKind::kFirmwareRetract;
-    } else if (pull.any() || step.kind == StepKind::kTravel) {
+    } else if (pull.retracts() || step.kind == StepKind::kTravel) {
       break;
     } else {
       pull = {};
@@ -77,7 +68,7 @@ std::optional<Link> WithWipeOf(Link form, const Link& own) {
   const Pull pull = PullOf(own);
   // At marks the wipes of other paths serve as well.
   if (!pull.wipes || (pull.behind_marks && form.wipes) || form.fixed > 0 ||
-      pull.firmware != form.firmware || std::abs(pull.pulled - form.pulled) > kRetractionSlack) {
+      !pull.SameRetraction(form)) {
     return std::nullopt;
   }
   std::vector<LinkStep> steps = pull.steps;
@@ -94,7 +85,8 @@ std::optional<Link> WithWipeOf(Link form, const Link& own) {
 std::optional<Link> WithPullOf(const Link& link, const Link& own) {
   const Pull given = PullOf(link);
   const Pull pull = PullOf(own);
-  if (given.wipes == pull.wipes || !pull.Replaces(given)) return std::nullopt;
+  const bool replaces = given.retracts() && pull.retracts() && pull.SameRetraction(given);
+  if (given.wipes == pull.wipes || !replaces) return std::nullopt;
   Link out = link;
   out.steps.assign(link.steps.begin(),
                    link.steps.begin() + static_cast<std::ptrdiff_t>(given.begin));

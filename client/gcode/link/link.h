@@ -29,7 +29,20 @@ struct LinkStep {
   bool relative = false;  // Step
 };
 
-struct Link {
+// How filament is pulled back.
+struct Retraction {
+  Decimal pulled = 0;     // by E words, the most of it
+  bool firmware = false;  // with G10
+  bool wipes = false;     // while moving
+
+  bool retracts() const { return pulled > 0 || firmware; }
+  bool SameRetraction(const Retraction& other) const {
+    return std::abs(pulled - other.pulled) <= kRetractionSlack && firmware == other.firmware;
+  }
+};
+
+// As a Retraction, what it pulls back before the arrival.
+struct Link : Retraction {
   std::vector<LinkStep> steps;
 
   // Steps [0, fixed) stay unchanged; `behind_fixed` is the machine after them.
@@ -40,9 +53,6 @@ struct Link {
   // retracted one if there are such; not among the fixed ones. -1: none.
   int arrival = -1;
   bool arrives_retracted = false;
-
-  // Filament retracted before the arrival; 0 if none.
-  Decimal pulled = 0;
 
   // The print state during the arrival.
   PrintState travel_state{};
@@ -68,10 +78,11 @@ struct Link {
   // Feed rate of moves of Z alone; 0 if there are none.
   Decimal lift_feed = 0;
 
-  bool retracts() const { return pulled > 0 || firmware; }
-  bool SameRetraction(const Link& other) const {
-    return std::abs(pulled - other.pulled) <= kRetractionSlack && firmware == other.firmware;
-  }
+  // Steps before the arrival begin with a short move away from the path.
+  bool departs = false;
+
+  // The height of the arrival; that of the next path if the arrival is not above what was printed.
+  Decimal top = 0;
 
   // REQUIRES: arrival >= 0.
   const LinkStep& arriving() const { return steps[static_cast<size_t>(arrival)]; }
@@ -79,12 +90,6 @@ struct Link {
 
   // True if step `i` stands before the arrival.
   bool Leaves(size_t i) const { return static_cast<int>(i) < arrival; }
-  bool firmware = false;  // retracts with G10
-  bool wipes = false;
-  bool departs = false;  // steps before the arrival begin with a short move away from the path
-
-  // The height of the arrival; that of the next path if the arrival is not above what was printed.
-  Decimal top = 0;
 };
 
 // Whether the link before block `index` may begin with a slicer's move inwards; combing moves of

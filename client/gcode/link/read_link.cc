@@ -6,6 +6,7 @@
 
 #include "client/gcode/link/link.h"
 #include "client/gcode/model/arc.h"
+#include "client/gcode/model/positions.h"
 
 namespace traverse::gcode {
 namespace {
@@ -24,9 +25,8 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
   taken.relative = step.relative;
   if (step.command.kind == LineKind::kCommand) taken.words = step.command.words;
   if (IsXyMotion(step.kind)) {
-    taken.travel_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
-                               : std::hypot(ToDouble(after.at.x - step.from.x),
-                                            ToDouble(after.at.y - step.from.y));
+    taken.travel_mm =
+        step.arc ? ArcLength(step.command, step.from, after.at, 1) : LengthXy(step.from, after.at);
   }
   return taken;
 }
@@ -37,7 +37,7 @@ void NoteLift(Link& link) {
     if (step.kind == StepKind::kLift && step.feed > 0) link.lift_feed = step.feed;
   }
   if (link.arrival < 0) return;
-  const LinkStep& arrival = link.steps[static_cast<size_t>(link.arrival)];
+  const LinkStep& arrival = link.arriving();
   const Decimal top = std::max(arrival.from.z, arrival.to.z);
   link.lift = std::max<Decimal>(0, top - std::max(link.z_before, link.z_behind));
   // Slicers that lift by less than a layer travel to the next one below its height.
