@@ -16,8 +16,8 @@ bool Arrives(StepKind kind) {
 
 }  // namespace
 
-bool LinkComposer::LeavesAsGiven(uint32_t boundary) const {
-  return from_.as_given() && from_.placement().block + 1 == boundary;
+bool LinkComposer::LeavesAsGiven() const {
+  return from_.as_given() && from_.placement().block + 1 == *form_.boundary;
 }
 
 // The link that leads to the path in the file, or else to another one that begins as low, if the
@@ -75,7 +75,7 @@ void LinkComposer::ComposeBoundary() {
     // Whatever was printed last: at its marks the fan is as in the file.
     link_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }
-  const bool as_given = LeavesAsGiven(boundary);
+  const bool as_given = LeavesAsGiven();
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> like;
   if (form_.retracts && !link.arrives_retracted && link.arrival >= 0) like = LikeWhat(true);
@@ -120,8 +120,7 @@ void LinkComposer::ComposeBoundary() {
 // Most travel to layers rises, but not what led here in the file, perhaps as it was short.
 void LinkComposer::TravelToBoundary(const Link& link) {
   const Decimal z = to_.first().z;
-  const bool rises =
-      LeavesAsGiven(*form_.boundary) || link.lift > 0 || !link.retracts() || link.top != z;
+  const bool rises = LeavesAsGiven() || link.lift > 0 || !link.retracts() || link.top != z;
   const Decimal lift = rises || link.lift_feed == 0 ? 0 : donors_.LiftToLayer(*form_.boundary);
   TravelAs(link, link.top + lift, link);
   if (lift > 0) link_.Lift(z, link.lift_feed);
@@ -130,7 +129,7 @@ void LinkComposer::TravelToBoundary(const Link& link) {
 void LinkComposer::ComposeBoundaryStep(const Link& link, size_t i) {
   const LinkStep& step = link.steps[i];
   const std::string_view raw = step.line.Raw(file_.text);
-  const bool as_given = LeavesAsGiven(*form_.boundary);
+  const bool as_given = LeavesAsGiven();
   switch (step.kind) {
     case StepKind::kTravel:
       if (LeadsAside(link, i)) return link_.Travel(raw, step.to, step.feed);

@@ -164,8 +164,10 @@ Link LinkComposer::Depart(const Link& like, const PrintState& travel) {
     } else if (step.kind == StepKind::kWipeMark ||
                (exact && link.wipes && step.kind == StepKind::kFeed)) {
       Stay(step);
-    } else if (step.kind != StepKind::kLift || step.to.z >= step.from.z) {
-      Move(step, link.z_before, z);
+    } else if (step.kind != StepKind::kLift) {
+      StayIfStill(step);
+    } else if (step.to.z >= step.from.z) {
+      LiftAs(step, z + (step.to.z - link.z_before));
     }
   }
   return link;
@@ -220,21 +222,10 @@ void LinkComposer::Wipe(const Link& like) {
   if (left > 0) link_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
 }
 
-// A step that moves filament or Z alone; Z relative to the height of what is printed.
-void LinkComposer::Move(const LinkStep& step, Decimal z_like, Decimal z_here) {
-  switch (step.kind) {
-    case StepKind::kFilament:
-    case StepKind::kSetE:
-    case StepKind::kFirmwareRetract:
-    case StepKind::kFirmwareUnretract:
-    case StepKind::kPlane:
-    case StepKind::kDwell:
-      return Stay(step);
-    case StepKind::kLift:
-      return LiftAs(step, z_here + (step.to.z - z_like));
-    default:
-      return;
-  }
+void LinkComposer::StayIfStill(const LinkStep& step) {
+  const bool still = MovesFilament(step.kind) || step.kind == StepKind::kSetE ||
+                     step.kind == StepKind::kPlane || step.kind == StepKind::kDwell;
+  if (still) Stay(step);
 }
 
 void LinkComposer::Follow(const LinkStep& step) {
@@ -288,7 +279,7 @@ void LinkComposer::Arrive(const Link& like) {
     if (step.kind == StepKind::kLift) {
       LiftAs(step, HeightBehindTravel(step, like));
     } else {
-      Move(Balanced(step, like), 0, 0);
+      StayIfStill(Balanced(step, like));
     }
   }
 }

@@ -61,15 +61,14 @@ class LinkComposer {
   PrintState StateOfTravel(const Link& link) const;
   std::shared_ptr<const Link> OwnArrival(const Link& link) const;
 
-  // Whether the link before block `boundary` follows the path before as it is in the file.
-  bool LeavesAsGiven(uint32_t boundary) const;
+  // Whether the link with the marks follows the path before as it is in the file.
+  bool LeavesAsGiven() const;
 
   PrintState TravelStateOf(const Link& like) const;
   Link Depart(const Link& like, const PrintState& travel);
   void DepartAsOwn();
   void GoOn();
   void Wipe(const Link& like);
-  void Move(const LinkStep& step, Decimal z_like, Decimal z_here);
   std::vector<Position> BendsToNext() const;
   void TravelAs(const Link& like, Decimal top, const Link& rise);
   void Arrive(const Link& like);
@@ -77,8 +76,9 @@ class LinkComposer {
   void AddOwn(std::initializer_list<StepKind> kinds);
   void Settle(const Link& like);
 
-  // The line of `step` where the head stands.
+  // The line of `step` where the head stands; the latter if it is of no travel, mark or setting.
   void Stay(const LinkStep& step) { link_.Edited(step, file_, link_.at()); }
+  void StayIfStill(const LinkStep& step);
 
   // The line of `step`, to where it leads in the file, at the height of the head.
   void Follow(const LinkStep& step);

@@ -144,7 +144,8 @@ void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
   Begin(false);
   Command command;
   LexLine(line.substr(0, line.find_last_not_of("\r\n") + 1), command);
-  if (command.number > 1) return StraightTravel(to, feed);
+  // Where the file travels along an arc.
+  if (command.number > 1) return Travel("G1" + line_end_, to, feed);
   WordChange changes[5] = {{'X', to.x, file_.xy_style}, {'Y', to.y, file_.xy_style}};
   size_t count = 2;
   if (command.Has('Z') || to.z != at.machine.at.z) changes[count++] = {'Z', to.z, file_.xy_style};
@@ -156,18 +157,6 @@ void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
   const bool right = command.Has('F') ? command.Value('F') == feed : feed == at.machine.feed;
   if (!right) changes[count++] = {'F', feed, NumberStyle{}};
   AppendEdited(line, {changes, count}, text_);
-  at.machine.at = to;
-  at.machine.feed = feed;
-}
-
-// Where the file travels along an arc.
-void GcodeOut::StraightTravel(const Position& to, Decimal feed) {
-  text_.append("G1");
-  AppendWord('X', to.x, file_.xy_style);
-  AppendWord('Y', to.y, file_.xy_style);
-  if (to.z != at.machine.at.z) AppendWord('Z', to.z, file_.xy_style);
-  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
-  EndLine();
   at.machine.at = to;
   at.machine.feed = feed;
 }

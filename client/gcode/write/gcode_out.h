@@ -69,7 +69,6 @@ class GcodeOut {
   // Before a command, which moves filament alone or not.
   void Begin(bool pulls);
   void EndLine() { text_.append(line_end_); }
-  void StraightTravel(const Position& to, Decimal feed);
   void CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
                    bool without_progress);
   void AppendE(Decimal filament);
