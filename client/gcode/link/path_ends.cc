@@ -8,7 +8,7 @@ namespace traverse::gcode {
 namespace {
 
 // Shorter moves than it takes to get going have corners between them, at which it is not got going.
-constexpr size_t kMostMoves = 48;
+constexpr ptrdiff_t kMostMoves = 48;
 
 // All moves of `path`, as they are printed (path_writer.h); `body` is its body as it is placed.
 std::vector<BodySegment> MovesOf(const PlacedPath& path, const PathBody& body) {
@@ -37,29 +37,25 @@ std::vector<BodySegment> MovesOf(const PlacedPath& path, const PathBody& body) {
 PathEnds::PathEnds(const GcodeFile& file, const PlacedPath& path)
     : file_(&file), modes_(file.modes[path.block().mode]) {
   const PathBody body = path.PrintedBody();
-  states_ = body.states;
-  for (const PrintState& state : states_) {
+  for (const PrintState& state : body.states) {
     dynamics_.push_back(DynamicsOf(file.profile, state, file.setters));
   }
-  states_.push_back(path.as_given() ? file.states[path.block().state_out]
-                                    : states_[body.segments.back().state]);
+  state_behind_ = path.as_given() ? file.states[path.block().state_out]
+                                  : body.states[body.segments.back().state];
   PrintedMoves all;
   all.moves = MovesOf(path, body);
   seconds_ = SecondsOf(all);
   const std::vector<BodySegment>& moves = all.moves;
-  const size_t most = std::min(moves.size(), kMostMoves);
-  double mm = 0;
-  for (size_t i = 0; i < most && !IsEnough(mm, moves[i]); ++i) {
-    first_.moves.push_back(moves[i]);
-    mm += LengthXy(moves[i].from, moves[i].to) * modes_.UnitMm();
-  }
-  mm = 0;
-  size_t begin = moves.size();
-  while (begin + most > moves.size() && !IsEnough(mm, moves[begin - 1])) {
-    --begin;
-    mm += LengthXy(moves[begin].from, moves[begin].to) * modes_.UnitMm();
-  }
-  last_.moves.assign(moves.begin() + static_cast<ptrdiff_t>(begin), moves.end());
+  const auto behind_enough = [this](auto begin, auto end) {
+    double mm = 0;
+    auto at = begin;
+    for (; at != end && at - begin < kMostMoves && !IsEnough(mm, *at); ++at) {
+      mm += LengthXy(at->from, at->to) * modes_.UnitMm();
+    }
+    return at;
+  };
+  first_.moves.assign(moves.begin(), behind_enough(moves.begin(), moves.end()));
+  last_.moves.assign(behind_enough(moves.rbegin(), moves.rend()).base(), moves.end());
   first_.seconds = SecondsOf(first_);
   last_.seconds = SecondsOf(last_);
 }

@@ -29,7 +29,7 @@ class PathEnds {
   const PrintedMoves& last() const { return last_; }
 
   // What is in force behind the path.
-  const PrintState& state_behind() const { return states_.back(); }
+  const PrintState& state_behind() const { return state_behind_; }
 
   // A meter at standstill, and what follows first() or last() with it.
   PrintMeter Meter() const { return PrintMeter(file_->profile, dynamics_.front(), nullptr); }
@@ -43,8 +43,8 @@ class PathEnds {
 
   const GcodeFile* file_;
   MachineState modes_;
-  std::vector<PrintState> states_;  // [BodySegment::state]; one more: behind the path
   std::vector<Dynamics> dynamics_;  // [BodySegment::state]
+  PrintState state_behind_;
   double seconds_ = 0;
   PrintedMoves first_;
   PrintedMoves last_;
