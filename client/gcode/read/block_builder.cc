@@ -93,7 +93,11 @@ void BlockBuilder::Take(const Step& step, const MachineState& before,
   const bool goes_on = where_ != Where::kBody || after.feed == Last().feed_out;
   const bool prints = step.kind == StepKind::kExtrude ||
                       (step.kind == StepKind::kZeroExtrude && !step.retracted && goes_on);
-  if (prints) return TakePrinting(step, before, after);
+  if (prints) {
+    if (where_ != Where::kBody) BeginBlock(step, before, after);
+    where_ = Where::kBody;
+    return ExtendBlock(step, before, after);
+  }
   if (step.kind == StepKind::kSlot) TakeSlot(step);
   if (step.kind == StepKind::kLabel) TakeLabel(step);
   NoteScript(step);
@@ -102,13 +106,6 @@ void BlockBuilder::Take(const Step& step, const MachineState& before,
     faults_.push_back({step.line.begin, step.fault, file_.blocks.size()});
   }
   TakeOther(step, before, after);
-}
-
-void BlockBuilder::TakePrinting(const Step& step, const MachineState& before,
-                                const MachineState& after) {
-  if (where_ != Where::kBody) BeginBlock(step, before, after);
-  where_ = Where::kBody;
-  ExtendBlock(step, before, after);
 }
 
 void BlockBuilder::TakeOther(const Step& step, const MachineState& before,

@@ -60,7 +60,6 @@ class BlockBuilder {
     Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
   };
 
-  void TakePrinting(const Step& step, const MachineState& before, const MachineState& after);
   void TakeOther(const Step& step, const MachineState& before, const MachineState& after);
   void TakeSlot(const Step& step);
   void TakeLabel(const Step& step);
