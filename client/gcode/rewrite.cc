@@ -83,7 +83,7 @@ std::string Foot(const GcodeFile& file, const ChosenLayers& chosen) {
   GcodeOut out(file, chosen.behind, foot);
   const Block& last = file.blocks.back();
   const PartStart behind = StartBehind(file, last);
-  out.Copy(last.end, static_cast<Offset>(file.text.size()), behind, behind, false);
+  out.Copy({last.end, static_cast<Offset>(file.text.size()), behind, behind});
   return foot;
 }
 

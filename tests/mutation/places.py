@@ -55,7 +55,6 @@ PLACES = [
     gcode("write/gcode_out.cc", WRITTEN),
     gcode("link/boundary_composer.cc", WRITTEN),
     gcode("link/composer.cc", WRITTEN),
-    gcode("write/link_writer.cc", WRITTEN),
     gcode("write/path_writer.cc", WRITTEN),
     gcode("model/placed_path.cc", f"PlacedPath*:{WRITTEN}"),
     place("client/loadgen/latency_histogram.cc", "loadgen_tests", "LatencyHistogram*"),

@@ -76,7 +76,6 @@ void NewLink::Segment(const Position& to, bool extrudes, Decimal filament, Decim
   const StepKind kind = extrudes ? StepKind::kWipe : StepKind::kTravel;
   LinkLine& line = Add(LineForm::kSegment, {}, kind, {to.x, to.y, machine_.at.z});
   line.step.filament = filament;
-  line.extrudes = extrudes;
   pulled_ -= filament;
 }
 

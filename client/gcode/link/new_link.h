@@ -26,16 +26,15 @@ enum class LineForm : uint8_t {
   kSetter,   // as it is in the file; it sets slots
   kState,    // whatever lines set what is not set as it must be
   kStand,    // new: moves Z alone, filament alone, or nothing and states the feed rate
-  kSegment,  // new: a move with filament or without
+  kSegment,  // new: a move, with an E word if it is a wipe
 };
 
 struct LinkLine {
   LineForm form = LineForm::kRaw;
-  std::string_view raw;   // of lines of the file
-  LinkStep step;          // what the line does here
-  Position in_file;       // kEdited: where it leads in the file
-  size_t state = 0;       // kState: NewLink::states
-  bool extrudes = false;  // kSegment: has an E word
+  std::string_view raw;  // of lines of the file
+  LinkStep step;         // what the line does here
+  Position in_file;      // kEdited: where it leads in the file
+  size_t state = 0;      // kState: NewLink::states
 };
 
 // Lines of the file that stay as they are, but for the extruder's absolute positions.

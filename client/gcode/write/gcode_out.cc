@@ -28,34 +28,31 @@ GcodeOut::GcodeOut(const GcodeFile& file, const PartStart& start, std::string& t
   line_end_ = LineEndOf(file.text);
 }
 
-void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
-                    bool without_progress) {
-  Begin(behind.machine.Retracted());
+void GcodeOut::Copy(const FilePart& part) {
+  Begin(part.behind.machine.Retracted());
   const Decimal e = at.machine.e;
-  at = behind;
-  const Decimal shift = before.machine.RelativeE() ? 0 : e - before.machine.e;
-  const std::string_view text = std::string_view(file_.text).substr(begin, end - begin);
-  const auto progress = std::lower_bound(file_.progress.begin(), file_.progress.end(), begin);
-  without_progress = without_progress && progress != file_.progress.end() && *progress < end;
-  if (shift == 0 && !without_progress) {
-    text_.append(text);
-  } else {
-    CopyShifted(begin, end, shift, before.machine, without_progress);
-  }
+  at = part.behind;
+  const Decimal shift = part.before.machine.RelativeE() ? 0 : e - part.before.machine.e;
+  const auto progress = std::lower_bound(file_.progress.begin(), file_.progress.end(), part.begin);
+  const bool leaves_out =
+      part.without_progress && progress != file_.progress.end() && *progress < part.end;
+  if (shift != 0 || leaves_out) return CopyShifted(part, shift);
+  text_.append(file_.text, part.begin, part.end - part.begin);
 }
 
-void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
-                           bool without_progress) {
-  const std::string_view text(file_.text);
-  const auto progress = std::lower_bound(file_.progress.begin(), file_.progress.end(), begin);
+void GcodeOut::CopyShifted(const FilePart& part, Decimal shift) {
+  const std::string_view text = std::string_view(file_.text).substr(0, part.end);
+  MachineState modes = part.before.machine;
   Command command;
-  for (Offset next = begin; next < end;) {
-    const Line line = LineAt(text.substr(0, end), next);
+  for (Offset next = part.begin; next < part.end;) {
+    const Line line = LineAt(text, next);
     next = line.next;
     const std::string_view raw = line.Raw(text);
     LexLine(line.Text(text), command);
-    if (without_progress && std::binary_search(progress, file_.progress.end(), line.begin))
-      continue;
+    const bool leaves_out =
+        part.without_progress &&
+        std::binary_search(file_.progress.begin(), file_.progress.end(), line.begin);
+    if (leaves_out) continue;
     FollowModes(command, modes);
     if (command.Is('G', 92) && command.Has('E')) shift = 0;
     if (command.Moves() && command.Has('E') && shift != 0 && !modes.RelativeE()) {
@@ -66,6 +63,36 @@ void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, MachineState
     }
   }
   at.machine.e += shift;
+}
+
+void GcodeOut::Print(const NewLink& link) {
+  if (link.part()) Copy(*link.part());
+  for (const LinkLine& line : link.lines()) {
+    const LinkStep& step = line.step;
+    switch (line.form) {
+      case LineForm::kRaw:
+        Raw(line.raw);
+        break;
+      case LineForm::kEdited:
+        Edited(line);
+        break;
+      case LineForm::kTravel:
+        Travel(line.raw, step.to, step.feed);
+        break;
+      case LineForm::kSetter:
+        SetBy(line.raw, step.slots);
+        break;
+      case LineForm::kState:
+        Set(link.state(line), step.slots);
+        break;
+      case LineForm::kStand:
+        Stand(step);
+        break;
+      case LineForm::kSegment:
+        Segment("G1", step.to, step.kind == StepKind::kWipe, step.filament, step.feed, {}, {});
+        break;
+    }
+  }
 }
 
 void GcodeOut::Set(const PrintState& state, SlotMask mask) {

@@ -25,11 +25,12 @@ class GcodeOut {
 
   const GcodeFile& file() const { return file_; }
 
+  // Appends `link`, which begins where the text ends.
+  void Print(const NewLink& link);
+
   // Appends a part of the file unchanged, except the extruder's absolute positions, which continue
-  // from here. `before` and `behind` are the machine around the part in the file. Leaves out
-  // lines of progress if `without_progress`.
-  void Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
-            bool without_progress);
+  // from here.
+  void Copy(const FilePart& part);
 
   // Appends one line unchanged. The caller accounts for its effect on the machine.
   void Raw(std::string_view line) {
@@ -41,9 +42,6 @@ class GcodeOut {
   // set that would be set again before anything is done.
   void Set(const PrintState& state, SlotMask mask);
 
-  // Notes the line `setter`, which stands here in the file.
-  void SetBy(std::string_view line, SlotMask slots);
-
   // Appends the setters that are still to be written.
   void Flush();
 
@@ -51,10 +49,6 @@ class GcodeOut {
   // absolute E word continues from here, and X, Y and Z words state where the line leads now.
   // REQUIRES: line.form is kEdited.
   void Edited(const LinkLine& line);
-
-  // Appends `line` as a move to (x, y) at `z` with `feed` in force: changes the words of the line,
-  // and adds needed words that it lacks.
-  void Travel(std::string_view line, const Position& to, Decimal feed);
 
   // A line of our own, in the styles of the file: `G1` for `step`, which moves Z alone, filament
   // alone, or nothing and states the feed rate.
@@ -69,8 +63,14 @@ class GcodeOut {
   // Before a command, which moves filament alone or not.
   void Begin(bool pulls);
   void EndLine() { text_.append(line_end_); }
-  void CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
-                   bool without_progress);
+  void CopyShifted(const FilePart& part, Decimal shift);
+
+  // Appends a setter, as it is in the file.
+  void SetBy(std::string_view line, SlotMask slots);
+
+  // Appends `line` as a move to `to` with `feed` in force: changes the words of the line, and adds
+  // needed words that it lacks.
+  void Travel(std::string_view line, const Position& to, Decimal feed);
   void AppendE(Decimal filament);
   void AppendWord(char letter, Decimal value, NumberStyle style);
 

@@ -5,7 +5,6 @@
 
 #include "client/gcode/link/composer.h"
 #include "client/gcode/link/label_lines.h"
-#include "client/gcode/write/link_writer.h"
 #include "client/gcode/write/path_writer.h"
 #include "client/gcode/write/progress_lines.h"
 
@@ -162,7 +161,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   LinkForm form = links_.FormOf(from.placement(), end, to.placement(), place);
   links_.Hide(from.placement(), to.placement(), as_sliced ? Hiding::kNone : Hiding::kBent, form);
   form.without_progress = !form.boundary || moved;
-  PrintLink(LinkComposer(parts, donors_, from, to, form, out.at.machine).Compose(), out);
+  out.Print(LinkComposer(parts, donors_, from, to, form, out.at.machine).Compose());
 }
 
 }  // namespace traverse::gcode

@@ -40,9 +40,8 @@ void WritePath(const PlacedPath& path, GcodeOut& out) {
     const GcodeFile& file = out.file();
     const Block& block = path.block();
     const PartStart start{StateAt(file, block), file.states[block.state_in]};
-    out.Copy(block.begin, block.end, start, StartBehind(file, block),
-             /*without_progress=*/(block.flags & kBlockProgress) != 0);
-    return;
+    const bool has_progress = (block.flags & kBlockProgress) != 0;
+    return out.Copy({block.begin, block.end, start, StartBehind(file, block), has_progress});
   }
   const Position* at = &path.first();
   for (const BodySegment& segment : path.body().segments) {

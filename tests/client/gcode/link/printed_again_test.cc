@@ -10,7 +10,7 @@
 #include "client/gcode/link/new_link.h"
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/write/link_writer.h"
+#include "client/gcode/write/gcode_out.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/read_text.h"
 
@@ -47,7 +47,7 @@ NewLink Again(const GcodeFile& file, size_t index, Decimal shift_mm = 0) {
 std::string Printed(const GcodeFile& file, size_t index, const NewLink& link) {
   std::string text;
   GcodeOut out(file, StartBehind(file, file.blocks[index - 1]), text);
-  PrintLink(link, out);
+  out.Print(link);
   out.Flush();
   return text;
 }

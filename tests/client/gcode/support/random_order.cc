@@ -100,7 +100,7 @@ std::string Shuffled(const GcodeFile& file, Policy policy, uint64_t seed) {
   GcodeOut foot(file, at, out);
   const Block& last = file.blocks.back();
   const PartStart behind = StartBehind(file, last);
-  foot.Copy(last.end, static_cast<Offset>(file.text.size()), behind, behind, false);
+  foot.Copy({last.end, static_cast<Offset>(file.text.size()), behind, behind});
   return out;
 }
 
