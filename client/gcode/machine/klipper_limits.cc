@@ -59,10 +59,11 @@ class KlipperReader {
   absl::StatusOr<MachineLimits> Read(std::string_view text) {
     if (const absl::Status status = TakeAll(text); !status.ok()) return status;
     const char* unread = has_unread_ ? "; files that it includes are not read" : "";
-    if (!has_printer_) return LimitFault(name_, absl::StrCat("it has no [printer]", unread));
+    if (!has_printer_) return LimitFault(name_, 0, absl::StrCat("it has no [printer]", unread));
     for (const auto& [field, key] : {std::pair(limits_.max_speed, "max_velocity"),
                                      std::pair(limits_.max_accel, "max_accel")}) {
-      if (!field) return LimitFault(name_, absl::StrFormat("[printer] has no %s%s", key, unread));
+      if (!field)
+        return LimitFault(name_, 0, absl::StrFormat("[printer] has no %s%s", key, unread));
     }
     FillDefaults();
     return limits_;
@@ -105,8 +106,7 @@ class KlipperReader {
 
   absl::Status BeginSection(std::string_view line, int number) {
     const size_t end = line.find(']');
-    if (end == std::string_view::npos)
-      return LimitFault(LineOf(name_, number), "a section without a ]");
+    if (end == std::string_view::npos) return LimitFault(name_, number, "a section without a ]");
     section_ = std::string(TrimBlanks(line.substr(1, end - 1)));
     has_printer_ = has_printer_ || section_ == "printer";
     retracts_ = retracts_ || section_ == "firmware_retraction";
@@ -122,11 +122,11 @@ class KlipperReader {
       return absl::OkStatus();
     }
     if (depth_ == kMostDepth) {
-      return LimitFault(LineOf(name_, number), "files include each other, or too deeply");
+      return LimitFault(name_, number, "files include each other, or too deeply");
     }
     const absl::StatusOr<std::vector<IncludedFile>> files = read_includes_(pattern, name_);
     if (!files.ok()) {
-      return LimitFault(LineOf(name_, number), std::string(files.status().message()));
+      return LimitFault(name_, number, std::string(files.status().message()));
     }
     const std::string name = name_;
     ++depth_;
@@ -145,8 +145,7 @@ class KlipperReader {
                    std::optional<double>& field) const {
     double value = 0;
     if (!absl::SimpleAtod(text, &value) || !range.holds(value)) {
-      return LimitFault(LineOf(name_, number),
-                        absl::StrFormat("%s: \"%s\" is %s", key, text, range.fault));
+      return LimitFault(name_, number, absl::StrFormat("%s: \"%s\" is %s", key, text, range.fault));
     }
     field = value;
     return absl::OkStatus();

@@ -14,9 +14,8 @@
 
 namespace traverse::gcode {
 
-// An error `where: what`, and the place of a line (from 1) in the file `name`.
-absl::Status LimitFault(const std::string& where, const std::string& what);
-std::string LineOf(const std::string& name, int line);
+// An error of the line `line`, from 1, of the file `name`; 0: of all of it.
+absl::Status LimitFault(const std::string& name, int line, const std::string& what);
 
 // Calls visit(line, number from 1) until that is a fault.
 template <typename Visit>

@@ -65,7 +65,7 @@ class MarlinReader {
     const absl::Status status =
         ForEachLine(text, [this](std::string_view line, int number) { return Take(line, number); });
     if (!status.ok()) return status;
-    if (!any_) return LimitFault(name_, kNeither);
+    if (!any_) return LimitFault(name_, 0, kNeither);
     return limits_;
   }
 
@@ -76,7 +76,7 @@ class MarlinReader {
     Command command;
     LexLine(line, command);
     if (command.kind == LineKind::kText && !said) {
-      return LimitFault(any_ ? LineOf(name_, number) : name_,
+      return LimitFault(name_, any_ ? number : 0,
                         any_ ? "neither a command nor a comment" : kNeither);
     }
     if (command.Is('G', 20) || command.Is('G', 21)) unit_mm_ = command.number == 20 ? 25.4 : 1;
@@ -86,7 +86,7 @@ class MarlinReader {
     // There M208 says how far the axes reach.
     if (!ours || (duet_ && command.number == 208)) return absl::OkStatus();
     if (!ReadWords(command)) {
-      return LimitFault(LineOf(name_, number),
+      return LimitFault(name_, number,
                         absl::StrFormat("M%d: its words cannot be read", command.number));
     }
     any_ = any_ || command.number <= 205;
@@ -112,8 +112,9 @@ class MarlinReader {
       if (command.number != word.number || !command.Has(word.letter)) continue;
       const double value = ToDouble(command.Value(word.letter));
       if (!word.range.holds(value)) {
-        return LimitFault(LineOf(name_, number), absl::StrFormat("M%d %c: %s", word.number,
-                                                                 word.letter, word.range.fault));
+        return LimitFault(
+            name_, number,
+            absl::StrFormat("M%d %c: %s", word.number, word.letter, word.range.fault));
       }
       std::optional<double>& field = limits_.*word.field;
       const double per_second = duet_ && command.number == 203 ? 60 : word.per_second;
