@@ -27,11 +27,7 @@ std::shared_ptr<const Link> LinkComposer::OwnArrival(const Link& link) const {
   const uint32_t to = to_.placement().block;
   const Decimal rise = donors_.RiseOf(to);
   if (rise == donors_.RiseOf(*form_.boundary)) return nullptr;
-  const bool marks = std::any_of(
-      link.steps.begin() + link.arrival + 1, link.steps.end(), [](const LinkStep& step) {
-        return step.kind == StepKind::kLabel || step.kind == StepKind::kLayerMark ||
-               step.kind == StepKind::kStay;
-      });
+  const bool marks = std::any_of(link.steps.begin() + link.arrival + 1, link.steps.end(), IsMark);
   if (marks) return nullptr;
   for (const auto& like : {std::optional(to), donors_.Find(to, link.retracts())}) {
     if (!like || donors_.RiseOf(*like) != rise) continue;

@@ -16,14 +16,13 @@ LayerLinks::LayerLinks(const GcodeFile& file, const Layer& layer, const Retracti
     : file_(file),
       layer_(layer),
       donors_(donors),
+      habit_(habit),
       room_(room),
       lift_mm_(room != nullptr ? LeastLiftMm() : 0),
       outlines_(OutlinesOf(file, layer)),
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),
       departures_(file, layer, donors, outlines_, walls_),
-      spares_walls_(habit.retracts && habit.spares_walls),
-      drops_wipes_(habit.drops_wipes),
       hides_(hides && habit.hidden != nullptr),
       travel_(travel) {}
 
@@ -93,7 +92,8 @@ void LayerLinks::DecideTravel(const Placement& from, Point end, const Placement&
   PlannedTravel& travel = form.travel;
   travel = rules_.TravelOf(behind_fixed.value_or(end), begin, feature);
   // Paths that the slicer wipes stay wiped, so that all travel moves from them are retracted.
-  form.wipes = file_.WipedBehind(from.block) && (!drops_wipes_ || form.boundary || travel.retracts);
+  form.wipes =
+      file_.WipedBehind(from.block) && (!habit_.drops_wipes || form.boundary || travel.retracts);
   form.retracts = form.wipes || travel.retracts;
   const Departure* departure = departures_.Of(from);
   form.departs = departure != nullptr;
@@ -102,7 +102,8 @@ void LayerLinks::DecideTravel(const Placement& from, Point end, const Placement&
   PlannedTravel behind = rules_.TravelOf(at, begin, feature);
   // What goes on along the path must not put a visible wall between the nozzle and the next one.
   const bool goes_on = !departure->wipes && !departure->departs;
-  if (goes_on && spares_walls_ && behind.retracts) form.retracts = true;
+  const bool spares_walls = habit_.retracts && habit_.spares_walls;
+  if (goes_on && spares_walls && behind.retracts) form.retracts = true;
   // That stays with the path, and so does what comes before its wipe.
   form.departs = !departure->departs || Departs(from, *departure, travel, behind);
   if (form.departs && !from.as_given()) form.turned_departure = departures_.ShortMove(from);

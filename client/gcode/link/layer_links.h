@@ -93,6 +93,7 @@ class LayerLinks {
   const GcodeFile& file_;
   const Layer& layer_;
   const LinkDonors& donors_;
+  const RetractionHabit& habit_;
   const Room* const room_;
   const double
       lift_mm_;  // the least of the layer's retracted travel; 0 where nothing is in the way
@@ -100,8 +101,6 @@ class LayerLinks {
   const VisibleWalls walls_;
   const TravelRules rules_;
   const LayerDepartures departures_;
-  const bool spares_walls_;
-  const bool drops_wipes_;
   const bool hides_;
   const TravelModel* const travel_;
 };

@@ -101,9 +101,7 @@ std::optional<Link> WithPullOf(const Link& link, const Link& own) {
 
 const LinkStep* GoingOnAlong(const Block& block, const Link& link) {
   if ((block.flags & kBlockGoesOn) == 0) return nullptr;
-  const auto first = std::find_if(link.steps.begin(), link.steps.end(), [](const LinkStep& step) {
-    return step.kind == StepKind::kTravel;
-  });
+  const auto first = std::ranges::find(link.steps, StepKind::kTravel, &LinkStep::kind);
   return first != link.steps.end() ? &*first : nullptr;
 }
 
@@ -114,8 +112,7 @@ bool MayDepart(const GcodeFile& file, size_t index) {
 
 const LinkStep* DepartureOf(const Link& link) {
   if (!link.departs) return nullptr;
-  const auto first = std::find_if(link.steps.begin(), link.steps.end(),
-                                  [](const LinkStep& step) { return IsXyMotion(step.kind); });
+  const auto first = std::ranges::find_if(link.steps, IsXyMotion, &LinkStep::kind);
   const auto place = static_cast<size_t>(first - link.steps.begin());
   const bool departs = first != link.steps.end() && first->kind == StepKind::kTravel;
   return departs && link.Leaves(place) ? &*first : nullptr;
@@ -185,6 +182,11 @@ bool LeadsAside(const Link& link) {
   return false;
 }
 
+bool IsMark(const LinkStep& step) {
+  return step.kind == StepKind::kLayerMark || step.kind == StepKind::kLabel ||
+         step.kind == StepKind::kStay;
+}
+
 bool MarksObjectsOnly(const Link& link) {
   bool labels = false;
   for (const LinkStep& step : link.steps) {
@@ -197,9 +199,7 @@ bool MarksObjectsOnly(const Link& link) {
 SlotMask SetBeforeMarks(const Link& link) {
   SlotMask slots = 0;
   for (const LinkStep& step : link.steps) {
-    const bool mark = step.kind == StepKind::kLayerMark || step.kind == StepKind::kLabel ||
-                      step.kind == StepKind::kStay;
-    if (mark) break;
+    if (IsMark(step)) break;
     slots |= step.slots;
   }
   return slots;

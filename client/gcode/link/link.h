@@ -128,6 +128,9 @@ bool LabelsBeforeTravel(const Link& link);
 bool LeadsAside(const Link& link, size_t i);
 bool LeadsAside(const Link& link);  // by any step
 
+// Of a layer, of an object, or a line that stays where it is.
+bool IsMark(const LinkStep& step);
+
 // It has labels of objects, at which nothing is done, and no other marks.
 bool MarksObjectsOnly(const Link& link);
 

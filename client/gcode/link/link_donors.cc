@@ -16,7 +16,7 @@ Decimal UsualLiftToLayers(const GcodeFile& file) {
   std::map<Decimal, int64_t> links;  // [lift]
   int64_t all = 0;
   for (const Layer& layer : file.layers) {
-    if (layer.first_block == 0 || layer.first_block >= file.blocks.size()) continue;
+    if (layer.first_block == 0) continue;
     const Block& first = file.blocks[layer.first_block];
     if ((first.link & kLinkRetracts) == 0 || first.travel_mm <= 0) continue;
     ++links[first.lift];
@@ -28,23 +28,15 @@ Decimal UsualLiftToLayers(const GcodeFile& file) {
   return 0;
 }
 
-// Whether the link before each block is whole, and of the part.
-std::vector<bool> MayFollowIn(const GcodeFile& file) {
-  constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
-  std::vector<bool> may_follow;
-  may_follow.reserve(file.blocks.size());
-  for (uint32_t i = 0; i < file.blocks.size(); ++i) {
-    may_follow.push_back((file.blocks[i].link & kNoExample) == 0 && LeadsWithinPart(file, i));
-  }
-  return may_follow;
-}
-
 }  // namespace
 
 LinkDonors::LinkDonors(const GcodeFile& file)
-    : file_(file), may_follow_(MayFollowIn(file)), lift_to_layers_(UsualLiftToLayers(file)) {
-  for (uint32_t i = 1; i < file.blocks.size(); ++i) {
+    : file_(file), lift_to_layers_(UsualLiftToLayers(file)) {
+  constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
+  may_follow_.reserve(file.blocks.size());
+  for (uint32_t i = 0; i < file.blocks.size(); ++i) {
     const Block& block = file.blocks[i];
+    may_follow_.push_back((block.link & kNoExample) == 0 && LeadsWithinPart(file, i));
     // If a path begins at the end of the one before it, there is no travel to learn from.
     if (!MayFollow(i) || !(block.travel_mm > 0)) continue;
     const Kind kind = KindOf(i);

@@ -65,7 +65,7 @@ class LinkDonors {
                                     uint32_t block) const;
 
   const GcodeFile& file_;
-  std::vector<bool> may_follow_;  // [block]
+  std::vector<bool> may_follow_;  // [block] its link is whole, and of the part
   std::map<Kind, ByRise> donors_;
   std::map<Kind, ByRise> lifted_;  // those of them that lift
   std::map<Kind, ByRise> wiping_;  // that wipe
