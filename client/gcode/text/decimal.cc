@@ -32,31 +32,23 @@ std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
 
 void AppendDecimal(Decimal value, NumberStyle style, std::string& out) {
   if (value < 0) out.push_back('-');
-  const uint64_t magnitude =
+  uint64_t left =
       value < 0 ? uint64_t{0} - static_cast<uint64_t>(value) : static_cast<uint64_t>(value);
-  uint64_t whole = magnitude / static_cast<uint64_t>(kDecimalOne);
-  uint64_t fraction = magnitude % static_cast<uint64_t>(kDecimalOne);
+  char digits[20];
+  char* const end = digits + sizeof(digits);
+  char* const point = end - 9;  // behind it are the decimals
+  char* first = end;
+  for (; left > 0 || first > point; left /= 10) *--first = static_cast<char>('0' + left % 10);
+  char* last = end;
+  while (last > point && last[-1] == '0') --last;
 
-  char buffer[20];
-  char* const buffer_end = buffer + sizeof(buffer);
-  char* digit = buffer_end;
-  for (; whole > 0; whole /= 10) *--digit = static_cast<char>('0' + whole % 10);
-  if (digit == buffer_end && (style.leading_zero || fraction == 0)) *--digit = '0';
-  out.append(digit, static_cast<size_t>(buffer_end - digit));
-
-  int decimals = 9;
-  while (decimals > 0 && fraction % 10 == 0) {
-    fraction /= 10;
-    --decimals;
-  }
+  if (first == point && (style.leading_zero || last == point)) out.push_back('0');
+  out.append(first, point);
+  const auto decimals = static_cast<int>(last - point);
   const int written = std::max(decimals, style.fixed_decimals);
   if (written <= 0) return;
   out.push_back('.');
-  digit = buffer_end;
-  for (int i = 0; i < decimals; ++i, fraction /= 10) {
-    *--digit = static_cast<char>('0' + fraction % 10);
-  }
-  out.append(digit, static_cast<size_t>(buffer_end - digit));
+  out.append(point, last);
   out.append(static_cast<size_t>(written - decimals), '0');
 }
 
