@@ -13,14 +13,6 @@ namespace {
 // Configurations are some 20 KiB; OrcaSlicer's with its embedded scripts 100 KiB.
 constexpr size_t kScanBytes = size_t{256} << 10;
 
-// The first of the numbers in `9000,1000` or `1.5;2`; nothing if it is none, or not finite.
-std::optional<double> FirstNumber(std::string_view value) {
-  const char* p = value.data();
-  const std::optional<Decimal> number = ParseDecimal(&p, value.data() + value.size());
-  if (!number) return std::nullopt;
-  return ToDouble(*number);
-}
-
 void SetPositive(double& field, std::optional<double> value) {
   if (value && *value > 0) field = *value;
 }
@@ -38,7 +30,7 @@ std::optional<double> ReachOf(std::string_view polygon) {
   std::optional<double> x;
   for (size_t at = polygon.find_first_of(kOfNumber); at != polygon.npos;) {
     const size_t end = std::min(polygon.find_first_not_of(kOfNumber, at), polygon.size());
-    const std::optional<double> number = FirstNumber(polygon.substr(at, end - at));
+    const std::optional<double> number = LeadingNumber(polygon.substr(at, end - at));
     if (!number) return std::nullopt;
     if (x) reach = std::max(reach.value_or(0), std::hypot(*x, *number));
     x = x ? std::nullopt : number;
@@ -48,7 +40,7 @@ std::optional<double> ReachOf(std::string_view polygon) {
 }
 
 void Apply(Setting setting, std::string_view value, MachineProfile& profile) {
-  const std::optional<double> number = FirstNumber(value);
+  const std::optional<double> number = LeadingNumber(value);  // the first of `9000,1000` or `1.5;2`
   switch (setting) {
     case Setting::kPrintAccel:
       return SetPositive(profile.print_accel, number);
@@ -111,7 +103,7 @@ void ApplySettings(std::string_view part, MachineProfile& profile) {
 std::optional<double> Parameter(std::string_view line, std::string_view name) {
   const size_t at = line.find(name);
   if (at == std::string_view::npos) return std::nullopt;
-  return FirstNumber(line.substr(at + name.size()));
+  return LeadingNumber(line.substr(at + name.size()));
 }
 
 // CuraEngine's, in the joined text of all its settings.

@@ -21,10 +21,8 @@ std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot
     const size_t at = line.find(slot == kSlotWidth ? 'W' : 'H');
     number = at == std::string_view::npos ? std::string_view{} : line.substr(at + 1);
   }
-  const char* p = number.data();
-  const std::optional<Decimal> value = ParseDecimal(&p, number.data() + number.size());
-  if (!value || *value <= 0) return std::nullopt;
-  return ToDouble(*value);
+  const std::optional<double> value = LeadingNumber(number);
+  return value && *value > 0 ? value : std::nullopt;
 }
 
 // The cross-section that is deposited is a rectangle with half circles at its sides.

@@ -30,6 +30,13 @@ std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
   return negative ? -value : value;
 }
 
+std::optional<double> LeadingNumber(std::string_view text) {
+  const char* p = text.data();
+  const std::optional<Decimal> number = ParseDecimal(&p, text.data() + text.size());
+  if (!number) return std::nullopt;
+  return ToDouble(*number);
+}
+
 void AppendDecimal(Decimal value, NumberStyle style, std::string& out) {
   if (value < 0) out.push_back('-');
   uint64_t left =

@@ -32,6 +32,9 @@ inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9
 // beyond kDecimalMax.
 std::optional<Decimal> ParseDecimal(const char** text, const char* end);
 
+// The number with which `text` begins, as ParseDecimal reads it.
+std::optional<double> LeadingNumber(std::string_view text);
+
 // How a file writes its numbers.
 struct NumberStyle {
   // Number of decimals always written, as in `E1.00000`; -1: trailing zeros are dropped.
