@@ -89,8 +89,7 @@ double RoomAt(Point p, Point a, Point b, double most, const SegmentGrid& grid, s
 double RoomOf(const Outline& outline, double most, const SegmentGrid& grid, size_t& looks) {
   constexpr int kPoints = 16;
   const std::vector<Point>& points = outline.shape();
-  double length = 0;
-  for (size_t k = 0; k + 1 < points.size(); ++k) length += Distance(points[k], points[k + 1]);
+  const double length = LengthMm(points);
   std::vector<double> rooms;
   double at = 0;
   for (size_t k = 0; k + 1 < points.size(); ++k) {

@@ -62,13 +62,13 @@ std::vector<Point> BentShape(const GcodeFile& file, const Block& block) {
   return shape;
 }
 
-double LengthOf(const std::vector<Point>& points) {
+}  // namespace
+
+double LengthMm(const std::vector<Point>& points) {
   double length = 0;
   for (size_t k = 1; k < points.size(); ++k) length += Distance(points[k - 1], points[k]);
   return length;
 }
-
-}  // namespace
 
 double LoopGapMm(const GcodeFile& file, double width_mm) {
   constexpr double kShare = 0.15;
@@ -100,7 +100,7 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.is_loop = outline.shape().size() > 3 && gap <= LoopGapMm(file, outline.width_mm) &&
                     static_cast<double>(block.length_mm) > shortest;
   const bool many_starts =
-      outline.points.size() > 3 && (outline.bent.empty() || LengthOf(outline.points) > shortest);
+      outline.points.size() > 3 && (outline.bent.empty() || LengthMm(outline.points) > shortest);
   outline.closed = outline.is_loop && (many_starts || gap == 0);
   outline.one_start = outline.closed && !many_starts;
   outline.feature = FeatureOf(file, block, outline.is_loop);

@@ -36,6 +36,9 @@ struct Outline {
   double width_mm = 0.45;  // of the deposited line, as the file says or its E words imply
 };
 
+// Along lines between the points.
+double LengthMm(const std::vector<Point>& points);
+
 // How far short of its start a loop with lines of this width may end: slicers clip up to 0.15
 // widths of the nozzle or of the line, and CuraEngine's coasting leaves 0.09 mm.
 double LoopGapMm(const GcodeFile& file, double width_mm);

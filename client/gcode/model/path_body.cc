@@ -45,10 +45,7 @@ PathBody ReadBody(const GcodeFile& file, const Block& block) {
       body.segments.push_back(SegmentOf(step, interpreter.state()));
       body.segments.back().state = static_cast<uint32_t>(body.states.size() - 1);
     } else if (step.kind == StepKind::kTravel) {
-      const Position to = interpreter.state().at;
-      body.tail_length += LengthXy(body.has_tail ? body.tail_end : step.from, to);
-      body.has_tail = true;
-      body.tail_end = to;
+      body.tail_length += LengthXy(step.from, interpreter.state().at);
     }
   }
   return body;

@@ -28,10 +28,7 @@ struct PathBody {
   std::vector<BodySegment> segments;
   std::vector<PrintState> states;
 
-  // The moves after the last segment that extrude nothing, as one: where it leads, and how far
-  // they go.
-  bool has_tail = false;
-  Position tail_end;
+  // How far the moves after the last segment go that extrude nothing; 0: there are none.
   double tail_length = 0;
 };
 

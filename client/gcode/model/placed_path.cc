@@ -71,13 +71,13 @@ void PlacedPath::PlaceReversed() {
   for (BodySegment& segment : segments) segment = Reversed(segment);
   first_ = segments.front().from;
   last_ = segments.back().to;
-  if (!body_.has_tail) return;
+  if (body_.tail_length == 0) return;
   // As long a tail as the path's own, straight on beyond its new end.
   const BodySegment& end = segments.back();
-  body_.tail_end =
-      Along(end.from, end.to, LengthXy(end.from, end.to) + body_.tail_length, unit_mm());
-  last_.x = body_.tail_end.x;
-  last_.y = body_.tail_end.y;
+  const double length = LengthXy(end.from, end.to) + body_.tail_length;
+  const Position tail_end = Along(end.from, end.to, length, unit_mm());
+  last_.x = tail_end.x;
+  last_.y = tail_end.y;
 }
 
 void PlacedPath::PlaceRotated() {

@@ -52,10 +52,7 @@ std::vector<TravelLine> MovesOf(absl::Span<const Point> travel) {
 
 }  // namespace
 
-bool IsVisibleWall(Feature feature) {
-  return feature == Feature::kOuterWall || feature == Feature::kLoop ||
-         feature == Feature::kOverhangWall;
-}
+bool IsVisibleWall(Feature feature) { return IsWall(feature) && feature != Feature::kInnerWall; }
 
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
   std::vector<Wall> walls;
