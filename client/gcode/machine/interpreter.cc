@@ -468,16 +468,11 @@ void Interpreter::Arc(Step& step) {
 
 void Interpreter::SetPosition(Step& step) {
   const Command& c = step.command;
-  if (c.words == Command::Bit('E')) {
-    state_.e = c.Value('E');
-    step.kind = StepKind::kSetE;
-    return;
-  }
   if (c.Has('X')) state_.at.x = c.Value('X');
   if (c.Has('Y')) state_.at.y = c.Value('Y');
   if (c.Has('Z')) state_.at.z = c.Value('Z');
   if (c.Has('E')) state_.e = c.Value('E');
-  step.kind = StepKind::kModeChange;
+  step.kind = c.words == Command::Bit('E') ? StepKind::kSetE : StepKind::kModeChange;
 }
 
 }  // namespace traverse::gcode

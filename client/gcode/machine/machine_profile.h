@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,14 +64,13 @@ class Dynamics {
   // The same, but only what it sets of `slot`: another setter may hold for the rest.
   void FollowFor(Slot slot, std::string_view line);
 
-  double print_accel() const { return Limited(print_accel_); }
-  double travel_accel() const { return Limited(travel_accel_); }
+  double print_accel() const { return std::min(print_accel_, max_accel_); }
+  double travel_accel() const { return std::min(travel_accel_, max_accel_); }
   double corner_speed() const { return corner_speed_; }
   double max_speed() const { return max_speed_; }
   double cruise_ratio() const { return cruise_ratio_; }
 
  private:
-  double Limited(double accel) const { return accel < max_accel_ ? accel : max_accel_; }
   void FollowKlipper(std::string_view line);
 
   bool klipper_;

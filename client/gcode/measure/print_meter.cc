@@ -9,10 +9,6 @@
 namespace traverse::gcode {
 namespace {
 
-PlannerRules RulesOf(const MachineProfile& profile) {
-  return {profile.klipper, profile.cruise_ratio, profile.extruder_corner_speed};
-}
-
 // A move of one axis alone, Z or the extruder.
 struct AxisMove {
   double length = 0;  // mm
@@ -44,7 +40,10 @@ AxisMove AxisMoveOf(const Step& step, const MachineState& state, const MachinePr
 
 PrintMeter::PrintMeter(const MachineProfile& profile, const Dynamics& dynamics,
                        const VisibleWalls* walls)
-    : profile_(profile), dynamics_(dynamics), walls_(walls), planner_(RulesOf(profile)) {}
+    : profile_(profile),
+      dynamics_(dynamics),
+      walls_(walls),
+      planner_({profile.klipper, profile.cruise_ratio, profile.extruder_corner_speed}) {}
 
 void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
   if (step.kind != StepKind::kSlot) return Follow(step, interpreter.state());

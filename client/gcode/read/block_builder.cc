@@ -132,10 +132,11 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
 
 void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
                               const MachineState& after) {
-  link_.flags |= LinkFlagsOf(step.kind);
+  const uint16_t flags = LinkFlagsOf(step.kind);
+  link_.flags |= flags;
   if (Heats(step)) link_.flags |= kLinkHeats;
   link_.sets_fan |= (step.slots & kFanSlots) != 0;
-  if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
+  if ((flags & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
   NotePlace(step, after);
   if (after.tool != before.tool) link_.changes_tool = true;
   if (link_.changes_tool && step.kind == StepKind::kFilament && step.filament > kRetractionSlack &&

@@ -51,8 +51,7 @@ std::vector<uint32_t> LayerWriter::PlacesOf(const LayerOrder& order) const {
   for (size_t i = 0; i < order.size(); ++i) {
     const bool goes_on = i > 0 && object_of(order[i]) == object_of(order[i - 1]);
     if (!goes_on) {
-      const uint32_t first = ObjectBegin(file_, order[i].block);
-      begin = std::max(first, layer_.first_block) - layer_.first_block;
+      begin = ObjectBegin(file_, order[i].block) - layer_.first_block;
       places.push_back(objects < begins.size() ? begins[objects] : static_cast<uint32_t>(i));
       here = i;
       ++objects;
