@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "client/gcode/dialects/dialect.h"
 #include "client/gcode/dialects/label.h"
@@ -184,9 +185,7 @@ void Interpreter::FollowG(Step& step) {
 }
 
 StepKind Interpreter::SwitchMode(bool& mode, bool value) {
-  const bool changed = mode != value;
-  mode = value;
-  return changed ? StepKind::kModeChange : StepKind::kSays;
+  return std::exchange(mode, value) != value ? StepKind::kModeChange : StepKind::kSays;
 }
 
 // One that is told the same again goes on as it did.

@@ -9,13 +9,17 @@
 #include <string_view>
 
 #include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "client/gcode/machine/machine_limits.h"
 #include "client/gcode/text/lexer.h"
 
 namespace traverse::gcode {
 
 // An error of the line `line`, from 1, of the file `name`; 0: of all of it.
-absl::Status LimitFault(const std::string& name, int line, const std::string& what);
+inline absl::Status LimitFault(const std::string& name, int line, const std::string& what) {
+  const std::string place = line > 0 ? absl::StrCat(":", line) : "";
+  return absl::InvalidArgumentError(absl::StrCat(name, place, ": ", what));
+}
 
 // Calls visit(line, number from 1) until that is a fault.
 template <typename Visit>

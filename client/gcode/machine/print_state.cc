@@ -55,6 +55,41 @@ SlotMask RepetierJerkSlots(Command& command) {
   return (slots & SlotBit(kSlotJerkX)) != 0 ? slots : 0;
 }
 
+// Of the extruder in use, or of the one that is named, which holds for itself, too.
+SlotMask PressureSlots(std::string_view rest) {
+  SlotMask slots = 0;
+  SlotMask of_extruder = 0;
+  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
+    if (parameter.starts_with("SMOOTH_TIME=")) {
+      slots |= SlotOfName("SMOOTH_TIME", kSlotNamedTool);
+    } else if (parameter.starts_with("EXTRUDER=")) {
+      of_extruder = SlotOfName(parameter, kSlotNamedTool);
+    } else {
+      slots |= SlotBit(kSlotPressure);
+    }
+  }
+  return slots == 0 ? 0 : slots | of_extruder;
+}
+
+SlotMask LimitSlots(std::string_view rest) {
+  SlotMask slots = 0;
+  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
+    if (parameter.starts_with("ACCEL=")) {
+      slots |= SlotBit(kSlotKlipperAccel);
+    } else if (parameter.starts_with("ACCEL_TO_DECEL=") ||
+               parameter.starts_with("MINIMUM_CRUISE_RATIO=")) {
+      slots |= SlotBit(kSlotKlipperDecel);
+    } else if (parameter.starts_with("SQUARE_CORNER_VELOCITY=")) {
+      slots |= SlotBit(kSlotKlipperCorner);
+    } else if (parameter.starts_with("VELOCITY=")) {
+      slots |= SlotBit(kSlotKlipperSpeed);
+    } else {
+      return 0;
+    }
+  }
+  return slots;
+}
+
 }  // namespace
 
 SlotMask CommentSlots(std::string_view comment) {
@@ -131,45 +166,6 @@ SlotMask CommandSlots(Command& command) {
       return NamedCommandSlots(command);
   }
 }
-
-namespace {
-
-// Of the extruder in use, or of the one that is named, which holds for itself, too.
-SlotMask PressureSlots(std::string_view rest) {
-  SlotMask slots = 0;
-  SlotMask of_extruder = 0;
-  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
-    if (parameter.starts_with("SMOOTH_TIME=")) {
-      slots |= SlotOfName("SMOOTH_TIME", kSlotNamedTool);
-    } else if (parameter.starts_with("EXTRUDER=")) {
-      of_extruder = SlotOfName(parameter, kSlotNamedTool);
-    } else {
-      slots |= SlotBit(kSlotPressure);
-    }
-  }
-  return slots == 0 ? 0 : slots | of_extruder;
-}
-
-SlotMask LimitSlots(std::string_view rest) {
-  SlotMask slots = 0;
-  for (std::string_view parameter; !(parameter = NextWord(rest)).empty();) {
-    if (parameter.starts_with("ACCEL=")) {
-      slots |= SlotBit(kSlotKlipperAccel);
-    } else if (parameter.starts_with("ACCEL_TO_DECEL=") ||
-               parameter.starts_with("MINIMUM_CRUISE_RATIO=")) {
-      slots |= SlotBit(kSlotKlipperDecel);
-    } else if (parameter.starts_with("SQUARE_CORNER_VELOCITY=")) {
-      slots |= SlotBit(kSlotKlipperCorner);
-    } else if (parameter.starts_with("VELOCITY=")) {
-      slots |= SlotBit(kSlotKlipperSpeed);
-    } else {
-      return 0;
-    }
-  }
-  return slots;
-}
-
-}  // namespace
 
 SlotMask TextSlots(std::string_view line) {
   const size_t end = std::min(line.find_first_of(" \t;"), line.size());

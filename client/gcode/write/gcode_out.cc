@@ -89,7 +89,7 @@ void GcodeOut::Print(const NewLink& link) {
         Stand(step);
         break;
       case LineForm::kSegment:
-        Segment("G1", step.to, step.kind == StepKind::kWipe, step.filament, step.feed, {}, {});
+        Segment("G1", step.to, step.kind == StepKind::kWipe, step.filament, step.feed);
         break;
     }
   }

@@ -57,7 +57,7 @@ class GcodeOut {
   // G1 (or another `command`) to `to`; with an E word if `extrudes`. `words` follow X and Y,
   // `comment` stands at the end.
   void Segment(std::string_view command, const Position& to, bool extrudes, Decimal filament,
-               Decimal feed, std::string_view words, std::string_view comment);
+               Decimal feed, std::string_view words = {}, std::string_view comment = {});
 
  private:
   // Before a command, which moves filament alone or not.

@@ -44,17 +44,15 @@ void WritePath(const PlacedPath& path, GcodeOut& out) {
     return out.Copy({block.begin, block.end, start, StartBehind(file, block), has_progress});
   }
   const Position* at = &path.first();
+  const auto travel = [&at, &out](const Position& to) {
+    if (!to.SameXy(*at)) out.Segment("G1", to, false, 0, out.at.machine.feed);
+  };
   for (const BodySegment& segment : path.body().segments) {
-    // The gap of a loop that ends short of its start.
-    if (!segment.from.SameXy(*at)) {
-      out.Segment("G1", segment.from, false, 0, out.at.machine.feed, {}, {});
-    }
+    travel(segment.from);  // the gap of a loop that ends short of its start
     WriteSegment(segment, path.body(), out);
     at = &segment.to;
   }
-  if (!path.last().SameXy(*at)) {
-    out.Segment("G1", path.last(), false, 0, out.at.machine.feed, {}, {});
-  }
+  travel(path.last());
 }
 
 }  // namespace traverse::gcode
