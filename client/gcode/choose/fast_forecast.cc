@@ -56,8 +56,10 @@ class FastSearch {
     const LayerWriter writer(file_, of_file, habit_, donors_, room_.Of(layer), hides, &travel);
     // As soon as fast itself gives up where it leads around walls: the rest changes little.
     const PolishLimit limit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};
-    MergeRules rules = RulesUnder(file_, of_file, Policy::kFast, allow_, limit);
-    rules.as_many_retractions = !hides;
+    const MergeRules rules{.policy = Policy::kFast,
+                           .as_many_retractions = !hides,
+                           .freedom = FreedomOf(file_, of_file, Policy::kFast, allow_),
+                           .polish = limit};
     // Where whole objects have changed places, the file's own order begins it.
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const std::vector<uint32_t> places = writer.PlacesOf(chosen);
@@ -66,7 +68,8 @@ class FastSearch {
     const double given = ForecastPaths(*column.writer, column.given_order());
     const double hidden = ForecastPaths(writer, column.given_order());
     KnownTravels travels(writer);
-    const double searched = ForecastPaths(writer, KickedOrder(travels, begun, rules));
+    const double searched =
+        ForecastPaths(writer, LayerMerge(travels, rules).Improve(begun, LayerMerge::Effort::kKick));
     return {given, std::min({given, hidden, searched})};
   }
 

@@ -24,13 +24,6 @@ namespace {
 // crossings, the second row has fewer.
 constexpr double kCrossingSeconds[] = {0, 0.25};
 
-// Choices besides the file's own that are turned.
-constexpr size_t kTurned = 2;
-
-void Append(const std::vector<PathPair>& more, std::vector<PathPair>& pairs) {
-  pairs.insert(pairs.end(), more.begin(), more.end());
-}
-
 // Travel moves that all layers together remember between the steps of choosing.
 constexpr size_t kMostRemembered = 400'000;
 
@@ -169,25 +162,23 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
   }
 
-  // By which the orders of a layer are merged.
-  MergeRules RulesOf(size_t layer) const {
-    MergeRules rules = RulesUnder(file_, file_.layers[layer], policy_, allow_, polish_);
-    rules.crossings = crossings_;
-    rules.ordered = columns_[layer].refusals.ordered;
-    if (rules.freedom) Append(rules.ordered, rules.freedom->ordered);
-    rules.as_many_retractions = columns_[layer].totals.inside[0].PushesExtra();
+  // By which the orders of a layer are merged. What may change in it is known if small changes are
+  // to be made, and `with_freedom`.
+  MergeRules RulesOf(size_t layer, bool with_freedom = false) const {
+    MergeRules rules{.policy = policy_,
+                     .crossings = crossings_,
+                     .as_many_retractions = columns_[layer].totals.inside[0].PushesExtra(),
+                     .polish = polish_,
+                     .ordered = columns_[layer].refusals.ordered};
+    if (with_freedom || polish_) {
+      rules.freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+      rules.freedom->ordered.insert(rules.freedom->ordered.end(), rules.ordered.begin(),
+                                    rules.ordered.end());
+    }
     if (polish_ && habit_.avoids_walls) {
       rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
     }
     return rules;
-  }
-
-  // What the policy allows in layer `layer`, whose orders are merged by `rules`.
-  LayerFreedom FreedomWithin(size_t layer, const MergeRules& rules) const {
-    if (rules.freedom) return *rules.freedom;
-    LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
-    Append(rules.ordered, freedom.ordered);
-    return freedom;
   }
 
   // The search found an order for layer `layer` besides the file's own.
@@ -204,8 +195,9 @@ class LayerChooser::Impl {
     }
     ForEachLayer(layers, [this](size_t layer) {
       LayerColumn& column = columns_[layer];
-      const LayerOrder chosen = Chosen(layer).order;
-      filler_.Add(KickedOrder(column.travels(), chosen, RulesOf(layer)), layer, column);
+      const MergeRules rules = RulesOf(layer);
+      LayerMerge merge(column.travels(), rules);
+      filler_.Add(merge.Improve(Chosen(layer).order, LayerMerge::Effort::kKick), layer, column);
     });
     FillTravelsAround(layers);
   }
@@ -256,10 +248,9 @@ class LayerChooser::Impl {
       if (refusals.Refuse(placement)) placement.entry = 0;
     }
     if (refusals.inside) {
-      MergeRules rules = RulesOf(layer);
+      MergeRules rules = RulesOf(layer, /*with_freedom=*/true);
       rules.refused = &refusals.links;
-      order = RepairedOrder(column.travels(), *order, rules, FreedomWithin(layer, rules),
-                            refusals.Reach());
+      order = LayerMerge(column.travels(), rules).Repair(*order, refusals.Reach());
     }
     if (order && refusals.begin) order = BegunAsSliced(*order, column.given_order());
     if (order && refusals.end) order = EndedAsSliced(*order, column.given_order());
@@ -276,7 +267,7 @@ class LayerChooser::Impl {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
-    const auto orders = SparingOrders(column.travels(), Chosen(layer).order, rules);
+    const auto orders = LayerMerge(column.travels(), rules).Spare(Chosen(layer).order);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -284,7 +275,7 @@ class LayerChooser::Impl {
     LayerColumn& column = columns_[layer];
     filler_.Begin(layer, column);
     filler_.AddHidden(layer, column);
-    MergeRules rules = RulesOf(layer);
+    MergeRules rules = RulesOf(layer, /*with_freedom=*/objects_.any());
     AddMerged(layer, rules, column);
     if (crossings_ == Crossings::kFewer) {
       // What is made at that price is often too long.
@@ -292,15 +283,14 @@ class LayerChooser::Impl {
       AddMerged(layer, rules, column);
     }
     if (!objects_.any() || found_.empty() || found_[layer].empty()) return;
-    const LayerFreedom freedom = FreedomWithin(layer, rules);
-    objects_.AddTo(layer, freedom, rules, filler_, column);
+    objects_.AddTo(layer, rules, filler_, column);
   }
 
   // The order found for layer `layer`, merged by `rules`.
   void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
     if (!AnyFound(layer)) return;
     NoteBlocked(found_[layer], column);
-    const auto orders = MergedOrders(column.travels(), found_[layer], rules);
+    const auto orders = LayerMerge(column.travels(), rules).Merge(found_[layer]);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
@@ -354,14 +344,12 @@ class LayerChooser::Impl {
 
   TurnedLayer TurnsOf(size_t layer) {
     LayerColumn& column = columns_[layer];
-    std::vector<LayerOrder> orders;
-    for (const LayerOrder* order : FastestOrders(column, kTurned)) orders.push_back(*order);
-    const MergeRules rules = RulesOf(layer);
+    const MergeRules rules = RulesOf(layer, /*with_freedom=*/true);
     std::vector<std::vector<uint32_t>> islands = {rests_.RegionsOf(layer)};
     if (islands[0] != rests_.IslandsOf(layer)) islands.push_back(rests_.IslandsOf(layer));
-    TurnedLayer turned =
-        TurnedOrders(column.travels(), travel_[layer], orders, rules, FreedomWithin(layer, rules),
-                     islands, rests_.least_seconds(), column.given_moments);
+    TurnedLayer turned = LayerMerge(column.travels(), rules)
+                             .Turn(FastestOrders(column), travel_[layer], islands,
+                                   rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
     if (layer == 0) return turned;
     turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;
@@ -372,7 +360,9 @@ class LayerChooser::Impl {
   void AddTurned(size_t layer, const IslandTurns& turns, size_t turn) {
     LayerOrder order = turns.OrderOf(turn);
     if (polish_) {
-      order = SettledWithin(columns_[layer].travels(), order, RulesOf(layer), turns.UnitsOf(turn));
+      const MergeRules rules = RulesOf(layer);
+      const LayerMerge merge(columns_[layer].travels(), rules);
+      order = merge.SettleWithin(order, turns.UnitsOf(turn));
     }
     filler_.Add(order, layer, columns_[layer]);
   }

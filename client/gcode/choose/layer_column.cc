@@ -158,15 +158,15 @@ std::string ColumnFiller::Add(const LayerOrder& order, size_t layer, const Layer
   return text;
 }
 
-std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t most) {
+std::vector<LayerOrder> FastestOrders(const LayerColumn& column) {
+  constexpr size_t kOthers = 2;
   std::vector<size_t> numbers;
   for (size_t c = 1; c < column.choices.size(); ++c) numbers.push_back(c);
-  std::stable_sort(numbers.begin(), numbers.end(), [&column](size_t a, size_t b) {
-    return column.totals.inside[a].seconds < column.totals.inside[b].seconds;
-  });
-  numbers.resize(std::min(numbers.size(), most));
-  std::vector<const LayerOrder*> orders = {&column.given_order()};
-  for (const size_t c : numbers) orders.push_back(&column.choices[c].order);
+  std::ranges::stable_sort(numbers, {},
+                           [&column](size_t c) { return column.totals.inside[c].seconds; });
+  numbers.resize(std::min(numbers.size(), kOthers));
+  std::vector<LayerOrder> orders = {column.given_order()};
+  for (const size_t c : numbers) orders.push_back(column.choices[c].order);
   return orders;
 }
 

@@ -108,8 +108,8 @@ class ColumnFiller {
   const IslandRests& rests_;
 };
 
-// The file's own order, and the `most` of the others that take the least time.
-std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t most);
+// The file's own order, and the two of the others that take the least time.
+std::vector<LayerOrder> FastestOrders(const LayerColumn& column);
 
 // How long islands must rest under `policy`: for the file's least layer time, except where
 // IsFree(policy), and for `min_seconds`.

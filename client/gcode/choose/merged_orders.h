@@ -3,7 +3,10 @@
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "client/gcode/choose/known_travels.h"
@@ -23,8 +26,8 @@ struct MergeRules {
   Crossings crossings = Crossings::kKeep;
   bool as_many_retractions = false;  // each pushes a little more or less than it pulls
 
-  // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
-  // and for how long. Either both are set or none.
+  // What may change in the layer, and for how long small changes improve its orders too
+  // (order_polish.h): they do not unless both are set.
   std::optional<LayerFreedom> freedom = {};
   std::optional<PolishLimit> polish = {};
 
@@ -36,53 +39,76 @@ struct MergeRules {
   const LinkSet* refused = nullptr;
 };
 
-// The rules by which orders of `layer` are merged under `policy`, with what else `allow` allows;
-// with small changes if `polish` says for how long.
-MergeRules RulesUnder(const GcodeFile& file, const Layer& layer, Policy policy,
-                      const Allowance& allow, const std::optional<PolishLimit>& polish);
+// Improves orders of one layer. Orders that have not each of its paths once stay as they are.
+class LayerMerge {
+ public:
+  using Effort = OrderPolisher::Effort;
 
-// `found`, improved with runs of the file's own order, and brought within the limits of `rules` as
-// far as estimates tell (order_merge.h): in a few ways, of which only the best stays where it
-// begins and ends with the same paths as the file. Where IsFree(policy) it is also tried with its
-// paths in the order of the file.
-std::vector<LayerOrder> MergedOrders(KnownTravels& travels, const LayerOrder& found,
-                                     const MergeRules& rules);
+  // Both outlive it.
+  LayerMerge(KnownTravels& travels, const MergeRules& rules);
+  LayerMerge(const LayerMerge&) = delete;
+  LayerMerge& operator=(const LayerMerge&) = delete;
 
-// `order` with the pairs of `rules` as sliced and without the links that they refuse, or as few of
-// them as can be had by changes around each; for a layer of freedom `freedom`. With greater
-// `reach`, more paths around each are as sliced at the most. Unset if all of them stay.
-std::optional<LayerOrder> RepairedOrder(KnownTravels& travels, const LayerOrder& order,
-                                        const MergeRules& rules, const LayerFreedom& freedom,
-                                        size_t reach);
+  // `found`, improved with runs of the file's own order, and brought within the limits of the rules
+  // as far as estimates tell (order_merge.h): in a few ways, of which only the best stays where it
+  // begins and ends with the same paths as the file. Where IsFree(policy) it is also tried with its
+  // paths in the order of the file.
+  std::vector<LayerOrder> Merge(const LayerOrder& found) const;
 
-// `order`, one of MergedOrders, improved once more in two ways so that it retracts less. Its first
-// and last path stay. REQUIRES: rules.freedom, rules.polish.
-std::vector<LayerOrder> SparingOrders(KnownTravels& travels, const LayerOrder& order,
-                                      const MergeRules& rules);
+  // `order`, one that was merged or in which whole objects have changed places, improved by small
+  // changes; with kicks (order_polish.h) that takes long. Its first and last path stay. REQUIRES:
+  // rules.freedom, rules.polish; and so do the next two.
+  LayerOrder Improve(const LayerOrder& order, Effort effort);
 
-// The turns of `orders` that may be chosen where islands must rest, for a layer of freedom
-// `freedom`. `islands` as IslandTurns takes them; for `rest_seconds` they rest at the most;
-// `moments`: when each path begins and ends in the file's own order. Of the result `given_times`
-// and the travel to the layer are left to be set.
-TurnedLayer TurnedOrders(KnownTravels& travels, const TravelModel& travel,
-                         const std::vector<LayerOrder>& orders, const MergeRules& rules,
-                         const LayerFreedom& freedom,
-                         const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
-                         const std::vector<double>& moments);
+  // `order`, one that was merged, improved with kicks in two ways so that it retracts less.
+  std::vector<LayerOrder> Spare(const LayerOrder& order);
 
-// `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
-// rules.polish.
-LayerOrder SettledWithin(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules,
-                         const std::vector<uint32_t>& units);
+  // `order`, improved within `units`: [path] what has to stay together.
+  LayerOrder SettleWithin(const LayerOrder& order, const std::vector<uint32_t>& units) const;
 
-// `orders`, in which whole objects have changed places, improved within each of them.
-// REQUIRES: rules.freedom, rules.polish.
-std::vector<LayerOrder> SettledOrders(KnownTravels& travels, std::vector<LayerOrder> orders,
-                                      const MergeRules& rules);
+  // `order` with the pairs of the rules as sliced and without the links that they refuse, or as few
+  // of them as can be had by changes around each. With greater `reach`, more paths around each are
+  // as sliced at the most. Unset if all of them stay. REQUIRES: rules.freedom.
+  std::optional<LayerOrder> Repair(LayerOrder order, size_t reach);
 
-// `order` improved with kicks (order_polish.h), which take long: for the one that was chosen. Its
-// first and last path stay. REQUIRES: rules.freedom, rules.polish.
-LayerOrder KickedOrder(KnownTravels& travels, const LayerOrder& order, const MergeRules& rules);
+  // The turns of `orders` that may be chosen where islands must rest. `islands` as IslandTurns
+  // takes them; for `rest_seconds` they rest at the most; `moments`: when each path begins and ends
+  // in the file's own order. Of the result `given_times` and the travel to the layer are left to be
+  // set. REQUIRES: rules.freedom.
+  TurnedLayer Turn(std::vector<LayerOrder> orders, const TravelModel& travel,
+                   const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
+                   const std::vector<double>& moments) const;
+
+ private:
+  bool IsWhole(const LayerOrder& order) const;
+  bool KeepsTogether(const LayerOrder& order) const;
+  void StandAs(const LayerOrder& order);
+  bool IsRefused(const Placement& from, const Placement& to) const;
+  TravelTotals TravelTo(size_t place, const Placement& from, const Placement& to) const;
+  LayerClock ClockOf(const std::vector<double>& moments, double mm_s) const;
+  LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,
+                    const std::vector<LayerOrder>& others, Effort effort) const;
+  std::pair<double, double> Rank(const LayerOrder& order) const;
+  void AddSparing(const LayerOrder& found, std::vector<LayerOrder>& merged) const;
+
+  const Outline& OutlineOf(const Placement& placement) const {
+    return writer_.outlines()[placement.block - given_.front().block];
+  }
+
+  const LayerWriter& writer_;
+  KnownTravels& travels_;
+  const MergeRules& rules_;
+  const LayerOrder given_;
+  std::vector<uint32_t> places_;  // [place] of the orders asked about, in the file; empty: the same
+  const TravelEstimate estimate_ = [this](size_t place, const Placement& from,
+                                          const Placement& to) {
+    return TravelTo(place, from, to);
+  };
+  const TravelTotals were_;
+  const OrderMerger strict_;  // keeps to what holds for the layer
+  const OrderMerger quick_;   // but for its crossings
+  std::optional<OrderPolisher> polisher_;
+};
 
 }  // namespace traverse::gcode
 

@@ -310,20 +310,22 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
   return moved;
 }
 
-void ObjectOrders::AddTo(size_t layer, const LayerFreedom& freedom, const MergeRules& rules,
-                         const ColumnFiller& filler, LayerColumn& column) const {
+void ObjectOrders::AddTo(size_t layer, const MergeRules& rules, const ColumnFiller& filler,
+                         LayerColumn& column) const {
   assert(any());
-  constexpr size_t kBests = 2;
   const Layer& of_file = file_.layers[layer];
-  const LayerObjects objects = ObjectsOf(of_file, freedom);
+  const LayerObjects objects = ObjectsOf(of_file, *rules.freedom);
   if (objects.runs.empty()) return;
   std::vector<LayerOrder> moved;
-  for (const LayerOrder* base : FastestOrders(column, kBests)) {
-    for (LayerOrder& order : Moved(of_file, objects, *base, IsFree(rules.policy))) {
+  for (const LayerOrder& base : FastestOrders(column)) {
+    for (LayerOrder& order : Moved(of_file, objects, base, IsFree(rules.policy))) {
       moved.push_back(std::move(order));
     }
   }
-  if (rules.polish) moved = SettledOrders(column.travels(), std::move(moved), rules);
+  if (rules.polish) {
+    LayerMerge merge(column.travels(), rules);
+    for (LayerOrder& order : moved) order = merge.Improve(order, LayerMerge::Effort::kSettle);
+  }
   for (const LayerOrder& order : moved) filler.Add(order, layer, column);
 }
 

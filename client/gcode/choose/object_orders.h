@@ -58,9 +58,9 @@ class ObjectOrders {
                                 const LayerOrder& order, bool backwards) const;
 
   // Adds the file's order and the best of the others of layer `layer`, with objects in other
-  // places, improved if `rules` say how. `freedom` is that of the layer. REQUIRES: any().
-  void AddTo(size_t layer, const LayerFreedom& freedom, const MergeRules& rules,
-             const ColumnFiller& filler, LayerColumn& column) const;
+  // places, improved if `rules` say how. REQUIRES: any(), rules.freedom.
+  void AddTo(size_t layer, const MergeRules& rules, const ColumnFiller& filler,
+             LayerColumn& column) const;
 
  private:
   using Ranks = absl::flat_hash_map<uint32_t, uint32_t>;  // [Block::object] its place on a trip

@@ -103,7 +103,8 @@ class OrderPolisher::Search {
     const size_t middle = begin + 1 + rng.Below(kLongestKicked);
     const size_t end = middle + 1 + rng.Below(kLongestKicked);
     if (end >= state_.size() || !state_.MayExchange(begin, middle, end)) return false;
-    state_.Do(begin, end, {PlaceRun{middle, end}, PlaceRun{begin, middle}});
+    state_.DoIfBetter(begin, end, {PlaceRun{middle, end}, PlaceRun{begin, middle}},
+                      /*any_cost=*/true);
     PushTouched();
     return true;
   }
@@ -113,6 +114,11 @@ class OrderPolisher::Search {
   const std::vector<uint32_t>& NeighborsAt(size_t place) const {
     return polisher_.neighbors_[state_.PathAt(place)];
   }
+
+  // Where the path at `place` begins and ends.
+  Point BeginAt(size_t place) const { return BeginOf(OutlineAt(place), state_.At(place)); }
+  Point EndAt(size_t place) const { return EndOf(OutlineAt(place), state_.At(place)); }
+  const Outline& OutlineAt(size_t place) const { return polisher_.outlines_[state_.PathAt(place)]; }
 
   // Other entries of the path at `i`.
   bool TryEntries(size_t i) {
@@ -126,10 +132,8 @@ class OrderPolisher::Search {
 
   // Those of the path at `i` that may suit it between the paths at `before` and `behind`.
   std::vector<uint32_t> EntriesBetween(size_t i, size_t before, size_t behind) const {
-    std::vector<uint32_t> entries = EntriesNear(i, polisher_.End(state_.At(before)));
-    for (const uint32_t entry : EntriesNear(i, polisher_.Begin(state_.At(behind)))) {
-      entries.push_back(entry);
-    }
+    std::vector<uint32_t> entries = EntriesNear(i, EndAt(before));
+    for (const uint32_t entry : EntriesNear(i, BeginAt(behind))) entries.push_back(entry);
     if (!entries.empty()) entries.push_back(0);
     return entries;
   }
@@ -216,7 +220,7 @@ class OrderPolisher::Search {
     for (const uint32_t near : NeighborsAt(i)) {
       const size_t j = state_.PlaceOf(near);
       if (j <= i + 1 || j - i > kLongestTurned || !state_.MayTurn(i + 1, j + 1)) continue;
-      if (!MayGain(i + 1, state_.At(i), OrderState::Turned(state_.At(j)))) continue;
+      if (!MayGain(i + 1, state_.At(i), Turned(state_.At(j)))) continue;
       if (state_.DoIfBetter(i + 1, j + 1, {PlaceRun{i + 1, j + 1, true}, PlaceRun{}})) return true;
     }
     return false;
@@ -226,7 +230,7 @@ class OrderPolisher::Search {
   // cheap as the one that leads on from `i` now.
   bool MayFollow(size_t i, size_t j) {
     if (MayGain(i + 1, state_.At(i), state_.At(j))) return true;
-    for (const uint32_t entry : EntriesNear(j, polisher_.End(state_.At(i)))) {
+    for (const uint32_t entry : EntriesNear(j, EndAt(i))) {
       if (MayGain(i + 1, state_.At(i), Entered(j, entry))) return true;
     }
     return false;
@@ -235,7 +239,7 @@ class OrderPolisher::Search {
   // The same of the travel to the path at `i` from the one at `j`.
   bool MayLead(size_t j, size_t i) {
     if (MayGain(i, state_.At(j), state_.At(i))) return true;
-    for (const uint32_t entry : EntriesNear(j, polisher_.Begin(state_.At(i)))) {
+    for (const uint32_t entry : EntriesNear(j, BeginAt(i))) {
       if (MayGain(i, Entered(j, entry), state_.At(i))) return true;
     }
     return false;
@@ -276,16 +280,6 @@ LayerOrder OrderPolisher::PolishWithin(const std::vector<uint32_t>& groups, cons
   assert(groups.size() == outlines_.size());
   if (begun.size() < 3) return begun;
   return Search(*this, groups, judge, begun).Run(effort);
-}
-
-Point OrderPolisher::Begin(const Placement& placement) const {
-  const std::vector<Point>& points = outlines_[placement.block - first_block_].points;
-  if (placement.closed) return points[placement.entry];
-  return placement.as_given() ? points.front() : points.back();
-}
-
-Point OrderPolisher::End(const Placement& placement) const {
-  return Begin(OrderState::Turned(placement));
 }
 
 uint32_t OrderPolisher::NearestEntry(uint32_t path, Point point) const {

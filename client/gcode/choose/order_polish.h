@@ -80,8 +80,6 @@ class OrderPolisher {
   class Search;
 
   void FindNeighbors();
-  Point Begin(const Placement& placement) const;
-  Point End(const Placement& placement) const;
   uint32_t NearestEntry(uint32_t path, Point point) const;
 
   const uint32_t first_block_;

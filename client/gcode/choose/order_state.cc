@@ -5,6 +5,7 @@
 #include <utility>
 
 namespace traverse::gcode {
+
 PathPairs::PathPairs(const LayerFreedom& freedom)
     : earlier(freedom.rules.size()), later(freedom.rules.size()) {
   for (const auto& [first, second] : freedom.ordered) {
@@ -41,11 +42,6 @@ OrderState::OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedo
 TravelTotals OrderState::Ask(size_t place, const Placement& from, const Placement& to) {
   ++asked_;
   return estimate_(place, from, to);
-}
-
-Placement OrderState::Turned(Placement placement) {
-  if (!placement.closed) placement.entry = 1 - placement.entry;
-  return placement;
 }
 
 // Whether other paths may come between the one at `place` and the one before it.
@@ -125,22 +121,10 @@ TravelTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& r
   return totals;
 }
 
-bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
+bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs, bool any_cost) {
   assert(0 < begin && begin < end && end < size());
   const TravelTotals totals = TotalsWith(begin, end, runs);
-  if (!judge_.IsBetter(totals, totals_)) return false;
-  Take(begin, end, runs, totals);
-  return true;
-}
-
-void OrderState::Do(size_t begin, size_t end, const PlaceRuns& runs) {
-  assert(0 < begin && begin < end && end < size());
-  const TravelTotals totals = TotalsWith(begin, end, runs);
-  Take(begin, end, runs, totals);
-}
-
-// REQUIRES: TotalsWith was called last, for the same, and returned `totals`.
-void OrderState::Take(size_t begin, size_t end, const PlaceRuns& runs, const TravelTotals& totals) {
+  if (!any_cost && !judge_.IsBetter(totals, totals_)) return false;
   totals_ = totals;
   run_.clear();
   new_travels_.clear();
@@ -162,6 +146,7 @@ void OrderState::Take(size_t begin, size_t end, const PlaceRuns& runs, const Tra
   for (const size_t i : {begin - 1, begin, middle - 1, middle, end - 1, end}) {
     touched_.push_back(PathAt(i));
   }
+  return true;
 }
 
 std::vector<uint32_t> OrderState::TakeTouched() { return std::exchange(touched_, {}); }

@@ -15,6 +15,7 @@
 
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/link/travel_totals.h"
+#include "client/gcode/model/outline.h"
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
 
@@ -41,6 +42,21 @@ struct PathPairs {
   std::vector<std::vector<uint32_t>> earlier;
   std::vector<std::vector<uint32_t>> later;
 };
+
+// `placement` in the other direction, if it is an open path.
+inline Placement Turned(Placement placement) {
+  if (!placement.closed) placement.entry = 1 - placement.entry;
+  return placement;
+}
+
+// Where a path with that outline begins and ends, as it is placed.
+inline Point BeginOf(const Outline& outline, const Placement& placement) {
+  if (placement.closed) return outline.points[placement.entry];
+  return placement.as_given() ? outline.points.front() : outline.points.back();
+}
+inline Point EndOf(const Outline& outline, const Placement& placement) {
+  return BeginOf(outline, Turned(placement));
+}
 
 class OrderState {
  public:
@@ -73,10 +89,9 @@ class OrderState {
   bool MayExchange(size_t begin, size_t middle, size_t end) const;
   bool MayTurn(size_t begin, size_t end) const;
 
-  // Applies `runs`, which together are the places [begin, end), if the judge prefers the result or
-  // always. True if applied. REQUIRES: the change is allowed; 0 < begin, end < size().
-  bool DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs);
-  void Do(size_t begin, size_t end, const PlaceRuns& runs);
+  // Applies `runs`, which together are the places [begin, end), if the judge prefers the result, or
+  // at `any_cost`. True if applied. REQUIRES: the change is allowed; 0 < begin, end < size().
+  bool DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs, bool any_cost = false);
 
   // Paths next to a change since the last call.
   std::vector<uint32_t> TakeTouched();
@@ -85,9 +100,6 @@ class OrderState {
   // was kept. The first order kept is the one at the beginning.
   bool KeepIfBetter();
 
-  // In the other direction, if it is an open path.
-  static Placement Turned(Placement placement);
-
  private:
   TravelTotals Ask(size_t place, const Placement& from, const Placement& to);
   bool MayCut(size_t place) const;
@@ -95,7 +107,6 @@ class OrderState {
   Placement PlacedIn(const PlaceRun& run, size_t k) const;
   static size_t NewTravels(const PlaceRun& run);
   TravelTotals TotalsWith(size_t begin, size_t end, const PlaceRuns& runs);
-  void Take(size_t begin, size_t end, const PlaceRuns& runs, const TravelTotals& totals);
 
   const uint32_t first_block_;
   const LayerFreedom& freedom_;

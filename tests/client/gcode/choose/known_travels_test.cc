@@ -79,12 +79,13 @@ class KnownTravelsTest : public ::testing::Test {
 // is known changes no order.
 TEST_F(KnownTravelsTest, AreEstimatedOnceForAllThatIsDoneToALayer) {
   KnownTravels travels(*writer_);
-  const std::vector<LayerOrder> merged = MergedOrders(travels, found_, rules_);
+  const std::vector<LayerOrder> merged = LayerMerge(travels, rules_).Merge(found_);
   const size_t by_merging = travels.size();
-  const LayerOrder kicked = KickedOrder(travels, merged.front(), rules_);
+  const LayerOrder kicked =
+      LayerMerge(travels, rules_).Improve(merged.front(), LayerMerge::Effort::kKick);
 
   KnownTravels others(*writer_);
-  EXPECT_EQ(KickedOrder(others, merged.front(), rules_), kicked);
+  EXPECT_EQ(LayerMerge(others, rules_).Improve(merged.front(), LayerMerge::Effort::kKick), kicked);
   EXPECT_NE(kicked, writer_->GivenOrder());
   EXPECT_GT(by_merging, 100u);
   EXPECT_LT(travels.size() - by_merging, others.size() / 2);
@@ -92,14 +93,14 @@ TEST_F(KnownTravelsTest, AreEstimatedOnceForAllThatIsDoneToALayer) {
 
 TEST_F(KnownTravelsTest, ForgetWhatTakesTooMuchMemory) {
   KnownTravels travels(*writer_);
-  const std::vector<LayerOrder> merged = MergedOrders(travels, found_, rules_);
+  const std::vector<LayerOrder> merged = LayerMerge(travels, rules_).Merge(found_);
   const size_t known = travels.size();
 
   travels.Shrink(known);
   EXPECT_EQ(travels.size(), known);
   travels.Shrink(known / 2);
   EXPECT_EQ(travels.size(), known / 2);
-  EXPECT_EQ(MergedOrders(travels, found_, rules_), merged);
+  EXPECT_EQ(LayerMerge(travels, rules_).Merge(found_), merged);
 }
 
 }  // namespace

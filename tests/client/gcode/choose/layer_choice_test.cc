@@ -131,7 +131,7 @@ TEST(LayerChooser, ImprovesWhatItChoseBeyondSmallChanges) {
     std::reverse(found.begin() + 1, found.end() - 1);
     double least = std::numeric_limits<double>::infinity();
     KnownTravels travels(writer);
-    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
+    for (const LayerOrder& order : LayerMerge(travels, rules).Merge(found)) {
       least = std::min(least, ForecastPaths(writer, order));
     }
     settled += least;

@@ -67,7 +67,7 @@ TEST_F(MergedOrdersTest, HaveNoOpenTravelAcrossWallsThatIsLongerThanTheFiles) {
   rules.crossings = Crossings::kAny;
 
   KnownTravels travels(*writer_);
-  const std::vector<LayerOrder> merged = MergedOrders(travels, found, rules);
+  const std::vector<LayerOrder> merged = LayerMerge(travels, rules).Merge(found);
 
   ASSERT_FALSE(merged.empty());
   for (const LayerOrder& order : merged) {
@@ -91,7 +91,7 @@ TEST_F(MergedOrdersTest, TheBestMayTravelFurtherThanTheFile) {
   MergeRules rules;
   rules.crossings = Crossings::kFewer;
   KnownTravels travels(writer);
-  const std::vector<LayerOrder> orders = MergedOrders(travels, found, rules);
+  const std::vector<LayerOrder> orders = LayerMerge(travels, rules).Merge(found);
 
   // Once as what only the whole file can tell to cross too many walls, and once as the best of all
   // that keep to the limits.
@@ -116,7 +116,7 @@ TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   rules.policy = Policy::kBalanced;
   const auto has = [&](const LayerOrder& order) {
     KnownTravels travels(writer);
-    const std::vector<LayerOrder> orders = MergedOrders(travels, found, rules);
+    const std::vector<LayerOrder> orders = LayerMerge(travels, rules).Merge(found);
     return std::count(orders.begin(), orders.end(), order) > 0;
   };
   const LayerOrder sparing = OrderOf({0, 1, 3, 2, 4, 5, 6, 7, 8});
@@ -146,7 +146,7 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   const auto shortest = [&] {
     double mm = std::numeric_limits<double>::infinity();
     KnownTravels travels(writer);
-    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
+    for (const LayerOrder& order : LayerMerge(travels, rules).Merge(found)) {
       TravelTotals totals;
       for (size_t i = 1; i < order.size(); ++i) {
         totals += writer.EstimateTravel(i, order[i - 1], order[i]);
@@ -227,7 +227,7 @@ TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
     rules.policy = policy;
     double least = 1e9;
     KnownTravels travels(writer);
-    for (const LayerOrder& order : MergedOrders(travels, found, rules)) {
+    for (const LayerOrder& order : LayerMerge(travels, rules).Merge(found)) {
       double mm = 0;
       for (size_t i = 1; i < order.size(); ++i) {
         mm += writer.EstimateTravel(i, order[i - 1], order[i]).mm;
@@ -265,7 +265,7 @@ TEST_F(MergedOrdersTest, SparingOrdersRetractLess) {
   rules.polish = PolishLimit();
 
   KnownTravels travels(writer);
-  const std::vector<LayerOrder> sparing = SparingOrders(travels, often, rules);
+  const std::vector<LayerOrder> sparing = LayerMerge(travels, rules).Spare(often);
 
   const int64_t given = retractions(writer.GivenOrder());
   ASSERT_GT(retractions(often), given);
