@@ -46,23 +46,21 @@ class IslandTurns::Maker {
 
   // Bases and turns of `order`.
   void Add(const LayerOrder& order) {
-    if (!IsAllowed(order)) return;
-    AddBase(order);
-    for (const LayerOrder& base :
-         {InSequence(order, RanksIn(order)), InSequence(order, RanksIn(given_))}) {
-      if (!IsAllowed(base)) continue;
+    if (IsAllowed(order)) AddBase(order);
+    for (const LayerOrder& base : Together(order)) {
       AddBase(Settled(base));
       AddBase(Settled(Backwards(base)));
     }
   }
 
-  // Adds `order` with its islands together to `orders`.
-  void AddTogether(const LayerOrder& order, std::vector<LayerOrder>& orders) {
-    if (!IsAllowed(order)) return;
-    for (const LayerOrder& base :
-         {InSequence(order, RanksIn(order)), InSequence(order, RanksIn(given_))}) {
-      if (IsAllowed(base)) orders.push_back(base);
-    }
+  // `order` with its islands together, in its own sequence of them and in that of the file; what is
+  // allowed of these.
+  std::vector<LayerOrder> Together(const LayerOrder& order) {
+    if (!IsAllowed(order)) return {};
+    std::vector<LayerOrder> together = {InSequence(order, RanksIn(order)),
+                                        InSequence(order, RanksIn(given_))};
+    std::erase_if(together, [this](const LayerOrder& base) { return !IsAllowed(base); });
+    return together;
   }
 
  private:
@@ -108,8 +106,7 @@ class IslandTurns::Maker {
       const uint32_t path = placement.block - first_;
       return std::pair(freedom_.group[path], ranks[part_[path]]);
     };
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [&](const Placement& a, const Placement& b) { return key(a) < key(b); });
+    std::ranges::stable_sort(sorted, {}, key);
     return sorted;
   }
 
@@ -183,9 +180,7 @@ class IslandTurns::Maker {
   }
 
   void AddBase(const LayerOrder& order) {
-    for (const Base& known : turns_.bases_) {
-      if (known.order == order) return;
-    }
+    if (std::ranges::find(turns_.bases_, order, &Base::order) != turns_.bases_.end()) return;
     Base base;
     base.order = order;
     base.begins = BeginsOf(order);
@@ -198,7 +193,7 @@ class IslandTurns::Maker {
     for (const TravelTotals& link : links_) base.link_seconds.push_back(SecondsOf(link));
     const auto number = static_cast<uint32_t>(turns_.bases_.size());
     turns_.bases_.push_back(std::move(base));
-    turns_.turns_.push_back({.base = number, .totals = totals});
+    turns_.turns_.push_back(TurnOf(number, {{0, size()}}, totals));
     AddTurns(number, totals);
     AddHeads(number, totals);
   }
@@ -225,14 +220,13 @@ class IslandTurns::Maker {
                   const TravelTotals& totals) {
     const auto [first, last] = group;
     const Base& base = turns_.bases_[number];
-    std::vector<Turn> all;
+    std::vector<std::pair<size_t, Turn>> all;  // with the place at which each begins
     for (size_t middle = first + 1; middle < last; ++middle) {
-      if (base.begins[middle]) {
-        all.push_back(TurnOf(number, {{middle, last}, {first, middle}}, totals));
-      }
+      if (!base.begins[middle]) continue;
+      all.emplace_back(middle, TurnOf(number, {{middle, last}, {first, middle}}, totals));
     }
     if (all.size() <= kMostBegins) {
-      turns_.turns_.insert(turns_.turns_.end(), all.begin(), all.end());
+      for (const auto& [begin, turn] : all) turns_.turns_.push_back(turn);
       return;
     }
     // The best one of each part.
@@ -242,8 +236,8 @@ class IslandTurns::Maker {
     }
     const double whole = at.back() + SecondsOfPath(base.order[last - 1]);
     std::vector<const Turn*> best(kMostBegins, nullptr);
-    for (const Turn& turn : all) {
-      const double share = whole > 0 ? at[turn.stretches[0].begin - first] / whole : 0;
+    for (const auto& [begin, turn] : all) {
+      const double share = whole > 0 ? at[begin - first] / whole : 0;
       const auto part = std::min(static_cast<size_t>(share * kMostBegins), kMostBegins - 1);
       const bool better = best[part] == nullptr || turn.totals.seconds < best[part]->totals.seconds;
       if (better) best[part] = &turn;
@@ -251,7 +245,14 @@ class IslandTurns::Maker {
     for (const Turn* turn : best) {
       if (turn != nullptr) turns_.turns_.push_back(*turn);
     }
-    AddAsGiven(all, base);
+    // And the one that begins where the file does: if those of all layers do, islands rest about as
+    // long as in the file.
+    const auto given =
+        std::ranges::find(base.order, given_[first].block, &Placement::block) - base.order.begin();
+    auto begin = static_cast<size_t>(given);
+    while (!base.begins[begin]) --begin;
+    const auto found = std::ranges::find(all, begin, &std::pair<size_t, Turn>::first);
+    if (found != all.end()) turns_.turns_.push_back(found->second);
   }
 
   // The first stretches of the first group in all other sequences.
@@ -276,21 +277,6 @@ class IslandTurns::Maker {
     }
   }
 
-  // Begun where the file begins: if all layers are, islands rest about as long as in the file.
-  void AddAsGiven(const std::vector<Turn>& all, const Base& base) {
-    const uint32_t first = all.front().first;
-    const auto begins_there = [&](const Turn& turn) {
-      const Stretch& head = turn.stretches[0];
-      for (size_t place = head.begin; place < head.end; ++place) {
-        if (place > head.begin && base.begins[place]) return false;
-        if (base.order[place].block == given_[first].block) return true;
-      }
-      return false;
-    };
-    const auto found = std::find_if(all.begin(), all.end(), begins_there);
-    if (found != all.end()) turns_.turns_.push_back(*found);
-  }
-
   double SecondsOfPath(const Placement& placement) const {
     return turns_.clock_.path_seconds[placement.block - first_];
   }
@@ -300,12 +286,10 @@ class IslandTurns::Maker {
               const TravelTotals& totals) {
     const LayerOrder& order = turns_.bases_[number].order;
     Turn turn{.base = number, .totals = totals};
-    const auto [begin, end] = std::minmax_element(sequence.begin(), sequence.end());
-    turn.first = static_cast<uint32_t>(begin->first);
-    const size_t last = end->second;
-    size_t place = turn.first;
-    size_t before = place > 0 ? place - 1 : size();  // in the base
+    size_t place = 0;
+    size_t before = size();  // in the base
     const auto add = [&](size_t from, size_t to) {
+      if (from == to) return;
       Stretch stretch{static_cast<uint32_t>(from), static_cast<uint32_t>(to), 0};
       // The link to what was there is in the totals.
       if (from > 0) turn.totals -= links_[from];
@@ -320,8 +304,10 @@ class IslandTurns::Maker {
       place += to - from;
       before = to - 1;
     };
+    const auto [begin, end] = std::minmax_element(sequence.begin(), sequence.end());
+    add(0, begin->first);
     for (const auto& [from, to] : sequence) add(from, to);
-    if (last < size()) add(last, size());
+    add(end->second, size());
     return turn;
   }
 
@@ -346,7 +332,7 @@ IslandTurns::IslandTurns(const LayerOrder& given, const std::vector<LayerOrder>&
                          const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
                          const LayerFreedom& freedom, const TravelEstimate& estimate,
                          const OrderMerger& judge, LayerClock clock, const Settle& settle)
-    : clock_(std::move(clock)), first_block_(given.front().block), given_size_(given.size()) {
+    : clock_(std::move(clock)), first_block_(given.front().block) {
   assert(clock_.path_seconds.size() == given.size());
   std::vector<LayerOrder> together;
   for (const std::vector<uint32_t>& told_apart : islands) {
@@ -357,7 +343,9 @@ IslandTurns::IslandTurns(const LayerOrder& given, const std::vector<LayerOrder>&
       KeepBest(judge, first);
     }
     // Then each island of what counts as one.
-    for (const LayerOrder& order : found) maker.AddTogether(order, together);
+    for (const LayerOrder& order : found) {
+      for (LayerOrder& base : maker.Together(order)) together.push_back(std::move(base));
+    }
   }
 }
 
@@ -365,54 +353,32 @@ void IslandTurns::KeepBest(const OrderMerger& judge, size_t first) {
   std::vector<Turn> turns(turns_.begin() + static_cast<std::ptrdiff_t>(first), turns_.end());
   turns_.resize(first);
   std::erase_if(turns, [&](const Turn& turn) { return judge.Excess(turn.totals) > 0; });
-  std::stable_sort(turns.begin(), turns.end(), [&](const Turn& a, const Turn& b) {
-    return judge.Score(a.totals) < judge.Score(b.totals);
-  });
+  std::ranges::stable_sort(turns, {}, [&](const Turn& turn) { return judge.Score(turn.totals); });
   size_t kept[2] = {0, 0};
   std::erase_if(turns, [&](const Turn& turn) { return ++kept[turn.head] > kMostOfAKind; });
   turns_.insert(turns_.end(), turns.begin(), turns.end());
 }
 
-const Placement& IslandTurns::At(size_t turn, size_t place) const {
-  const Turn& of = turns_[turn];
-  const LayerOrder& order = bases_[of.base].order;
-  size_t at = of.first;
-  for (const Stretch& stretch : of.stretches) {
-    const size_t size = stretch.end - stretch.begin;
-    if (place >= at && place < at + size) return order[stretch.begin + place - at];
-    at += size;
-  }
-  return order[place];
-}
-
 LayerOrder IslandTurns::OrderOf(size_t turn) const {
-  const Turn& of = turns_[turn];
-  LayerOrder order = bases_[of.base].order;
-  auto to = order.begin() + of.first;
-  for (const Stretch& stretch : of.stretches) {
-    const auto from = bases_[of.base].order.begin();
-    to = std::copy(from + stretch.begin, from + stretch.end, to);
+  const auto base = bases_[turns_[turn].base].order.begin();
+  LayerOrder order;
+  for (const Stretch& stretch : turns_[turn].stretches) {
+    order.insert(order.end(), base + stretch.begin, base + stretch.end);
   }
   return order;
 }
 
 std::vector<double> IslandTurns::MomentsOf(size_t turn) const {
-  const Turn& of = turns_[turn];
-  const Base& base = bases_[of.base];
+  const Base& base = bases_[turns_[turn].base];
   std::vector<double> moments;
-  moments.reserve(2 * given_size_);
   double at = 0;
-  const auto add = [&](size_t begin, size_t end, double link_seconds) {
-    for (size_t place = begin; place < end; ++place) {
-      if (!moments.empty()) at += place == begin ? link_seconds : base.link_seconds[place];
+  for (const Stretch& stretch : turns_[turn].stretches) {
+    for (size_t place = stretch.begin; place < stretch.end; ++place) {
+      at += place == stretch.begin ? stretch.link_seconds : base.link_seconds[place];
       moments.push_back(at);
       at += clock_.path_seconds[base.order[place].block - first_block_];
       moments.push_back(at);
     }
-  };
-  add(0, of.stretches.empty() ? given_size_ : of.first, 0);
-  for (const Stretch& stretch : of.stretches) {
-    add(stretch.begin, stretch.end, stretch.link_seconds);
   }
   return moments;
 }

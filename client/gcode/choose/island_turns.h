@@ -66,8 +66,6 @@ class IslandTurns {
   // of the first one.
   std::vector<double> MomentsOf(size_t turn) const;
 
-  const Placement& FirstOf(size_t turn) const { return At(turn, 0); }
-  const Placement& LastOf(size_t turn) const { return At(turn, given_size_ - 1); }
   const LayerClock& clock() const { return clock_; }
 
   // [path] what has to stay together, so that the layer keeps the sequence of its islands.
@@ -88,12 +86,11 @@ class IslandTurns {
     float link_seconds = 0;  // of the link to it, as it is now
   };
 
-  // A base with stretches of it, which adjoin, in another sequence.
+  // A base as stretches of it, some of which, which adjoin, are in another sequence.
   struct Turn {
     uint32_t base = 0;
-    bool head = false;                    // the first ones alone are in another sequence
-    uint32_t first = 0;                   // place from which on that is so
-    std::vector<Stretch> stretches = {};  // from there on, with what follows them
+    bool head = false;  // the first ones alone are in another sequence
+    std::vector<Stretch> stretches = {};
     TravelTotals totals;
   };
 
@@ -101,11 +98,9 @@ class IslandTurns {
 
   // Of the turns from `first` on.
   void KeepBest(const OrderMerger& judge, size_t first);
-  const Placement& At(size_t turn, size_t place) const;
 
   LayerClock clock_;
   uint32_t first_block_ = 0;
-  size_t given_size_ = 0;
   std::vector<Base> bases_;
   std::vector<Turn> turns_;
 };

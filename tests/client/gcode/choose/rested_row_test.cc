@@ -106,8 +106,9 @@ class RestedStack {
     turned.given_travel_mm = layer > 0 ? 50 : 0;
     turned.given_travel_seconds = turned.given_travel_mm / 100;
     for (size_t turn = 0; turn < turned.turns.size(); ++turn) {
-      turned.begin.push_back(point(turned.turns.FirstOf(turn)));
-      turned.end.push_back(point(turned.turns.LastOf(turn)));
+      const LayerOrder order = turned.turns.OrderOf(turn);
+      turned.begin.push_back(point(order.front()));
+      turned.end.push_back(point(order.back()));
     }
     return turned;
   }
