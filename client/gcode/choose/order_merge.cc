@@ -10,22 +10,25 @@ namespace {
 // What rounding of sums is less than.
 constexpr double kGrain = 1e-7;
 
-// An order as it is looked up: [path - first path of the layer].
+// An order as it is looked up. REQUIRES: the layer begins with block `first`.
 struct Source {
-  std::vector<uint32_t> rank;
-  std::vector<Placement> placement;
-};
-
-Source SourceOf(const LayerOrder& order, uint32_t first) {
-  Source source;
-  source.rank.resize(order.size());
-  source.placement.resize(order.size());
-  for (uint32_t i = 0; i < order.size(); ++i) {
-    source.rank[order[i].block - first] = i;
-    source.placement[order[i].block - first] = order[i];
+  Source(const LayerOrder& order, uint32_t first)
+      : first(first), rank(order.size()), placement(order.size()) {
+    for (uint32_t i = 0; i < order.size(); ++i) {
+      rank[order[i].block - first] = i;
+      placement[order[i].block - first] = order[i];
+    }
   }
-  return source;
-}
+
+  uint32_t RankOf(const Placement& path) const { return rank[path.block - first]; }
+  const Placement& PlacementOf(const Placement& path) const {
+    return placement[path.block - first];
+  }
+
+  uint32_t first;
+  std::vector<uint32_t> rank;        // [path]
+  std::vector<Placement> placement;  // [path]
+};
 
 // One merge in progress.
 class Merging {
@@ -39,13 +42,13 @@ class Merging {
   }
 
   // True if a run of the order of `source` makes it better.
-  bool TryAllRuns(const Source& source, uint32_t first) {
+  bool TryAllRuns(const Source& source) {
     bool better = false;
     const size_t end = order_.size() - 1;  // the last path stays
     for (size_t size = end - 1; size > 0; size /= 2) {
       const size_t step = std::max<size_t>(1, size / 2);
       for (size_t begin = 1; begin + size <= end && asked_ < most(); begin += step) {
-        better |= TryRun(source, first, begin, begin + size);
+        better |= TryRun(source, begin, begin + size);
       }
     }
     return better;
@@ -56,24 +59,22 @@ class Merging {
 
  private:
   // The run is as the source has it: so are most where orders differ little.
-  bool IsOf(const Source& source, uint32_t first, size_t begin, size_t end) const {
+  bool IsOf(const Source& source, size_t begin, size_t end) const {
     uint32_t next = 0;
     for (size_t i = begin; i < end; ++i) {
-      const uint32_t path = order_[i].block - first;
-      if (source.rank[path] < next || !(source.placement[path] == order_[i])) return false;
-      next = source.rank[path] + 1;
+      const uint32_t rank = source.RankOf(order_[i]);
+      if (rank < next || source.PlacementOf(order_[i]) != order_[i]) return false;
+      next = rank + 1;
     }
     return true;
   }
 
-  bool TryRun(const Source& source, uint32_t first, size_t begin, size_t end) {
-    if (IsOf(source, first, begin, end)) return false;
+  bool TryRun(const Source& source, size_t begin, size_t end) {
+    if (IsOf(source, begin, end)) return false;
     run_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin),
                 order_.begin() + static_cast<std::ptrdiff_t>(end));
-    for (Placement& placement : run_) placement = source.placement[placement.block - first];
-    std::sort(run_.begin(), run_.end(), [&](const Placement& a, const Placement& b) {
-      return source.rank[a.block - first] < source.rank[b.block - first];
-    });
+    for (Placement& placement : run_) placement = source.PlacementOf(placement);
+    std::ranges::sort(run_, {}, [&](const Placement& path) { return source.RankOf(path); });
     TravelTotals totals = totals_;
     new_travels_.clear();
     const Placement* at = &order_[begin - 1];
@@ -137,17 +138,14 @@ bool OrderMerger::IsBetter(const TravelTotals& totals, const TravelTotals& other
 LayerOrder OrderMerger::Merge(const LayerOrder& begun,
                               const std::vector<LayerOrder>& others) const {
   if (begun.size() < 3) return begun;
-  const uint32_t first =
-      std::min_element(begun.begin(), begun.end(), [](const Placement& a, const Placement& b) {
-        return a.block < b.block;
-      })->block;
+  const uint32_t first = std::ranges::min(begun, {}, &Placement::block).block;
   std::vector<Source> sources;
-  for (const LayerOrder& other : others) sources.push_back(SourceOf(other, first));
-  sources.push_back(SourceOf(begun, first));  // what a longer run took away may be better
+  for (const LayerOrder& other : others) sources.emplace_back(other, first);
+  sources.emplace_back(begun, first);  // what a longer run took away may be better
   Merging merge(*this, estimate_, begun);
   for (bool better = true; better;) {
     better = false;
-    for (const Source& source : sources) better |= merge.TryAllRuns(source, first);
+    for (const Source& source : sources) better |= merge.TryAllRuns(source);
   }
   return merge.Take();
 }

@@ -11,8 +11,7 @@ namespace {
 constexpr size_t kMostMoved = 64;
 
 LayerOrder::iterator Find(LayerOrder& order, uint32_t block) {
-  return std::find_if(order.begin(), order.end(),
-                      [block](const Placement& placement) { return placement.block == block; });
+  return std::ranges::find(order, block, &Placement::block);
 }
 
 // `order` with `first` and `second`, the paths at the places `begin` and `end` in either order,
@@ -64,7 +63,7 @@ LayerOrder AsSliced(LayerOrder order, size_t begin, size_t end) {
   const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
   const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
   for (auto path = first; path != last; ++path) path->entry = 0;
-  std::sort(first, last, [](const Placement& a, const Placement& b) { return a.block < b.block; });
+  std::ranges::sort(first, last, {}, &Placement::block);
   return order;
 }
 

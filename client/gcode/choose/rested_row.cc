@@ -34,9 +34,7 @@ class RowSearch {
       }
       before = std::move(candidates);
     }
-    const auto best =
-        std::min_element(before.begin(), before.end(),
-                         [](const auto& a, const auto& b) { return a.score < b.score; });
+    const auto best = std::ranges::min_element(before, {}, &Candidate::score);
     auto choice = static_cast<uint32_t>(best - before.begin());
     std::vector<std::optional<uint32_t>> row(layers_.size());
     for (size_t layer = layers_.size(); layer-- > 0;) {
