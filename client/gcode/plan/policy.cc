@@ -6,29 +6,18 @@
 #include <string_view>
 
 namespace traverse::gcode {
-
-std::optional<Policy> PolicyOfName(std::string_view name) {
-  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree, Policy::kFast}) {
-    if (PolicyName(policy) == name) return policy;
-  }
-  return std::nullopt;
-}
-
-std::string_view PolicyName(Policy policy) {
-  switch (policy) {
-    case Policy::kSafe:
-      return "safe";
-    case Policy::kBalanced:
-      return "balanced";
-    case Policy::kFree:
-      return "free";
-    case Policy::kFast:
-      return "fast";
-  }
-  return "";
-}
-
 namespace {
+
+constexpr std::string_view kPolicyNames[] = {"safe", "balanced", "free", "fast"};
+constexpr std::string_view kCrossingsNames[] = {"keep", "fewer", "any"};
+
+// The value that has its name in `names`, which are those of all values.
+template <typename Value, size_t n>
+std::optional<Value> ValueOfName(const std::string_view (&names)[n], std::string_view name) {
+  const auto* const known = std::ranges::find(names, name);
+  if (known == std::end(names)) return std::nullopt;
+  return static_cast<Value>(known - std::begin(names));
+}
 
 struct AllowanceName {
   std::string_view name;
@@ -46,6 +35,12 @@ constexpr AllowanceName kAllowances[] = {
 
 }  // namespace
 
+std::optional<Policy> PolicyOfName(std::string_view name) {
+  return ValueOfName<Policy>(kPolicyNames, name);
+}
+
+std::string_view PolicyName(Policy policy) { return kPolicyNames[static_cast<size_t>(policy)]; }
+
 Allowance AllowedUnder(Policy policy, Allowance allow) {
   const bool fast = policy == Policy::kFast;
   allow.wipes = allow.wipes || fast;
@@ -59,8 +54,7 @@ std::optional<Allowance> AllowanceOfNames(std::string_view names) {
   while (!names.empty()) {
     const size_t end = std::min(names.find(','), names.size());
     const std::string_view word = names.substr(0, end);
-    const auto* known = std::find_if(std::begin(kAllowances), std::end(kAllowances),
-                                     [word](const AllowanceName& it) { return it.name == word; });
+    const auto* const known = std::ranges::find(kAllowances, word, &AllowanceName::name);
     if (known == std::end(kAllowances) || end + 1 == names.size()) return std::nullopt;
     allow.*known->flag = true;
     names.remove_prefix(std::min(end + 1, names.size()));
@@ -79,22 +73,11 @@ std::string AllowanceNames(const Allowance& allow) {
 }
 
 std::optional<Crossings> CrossingsOfName(std::string_view name) {
-  for (const Crossings crossings : {Crossings::kKeep, Crossings::kFewer, Crossings::kAny}) {
-    if (CrossingsName(crossings) == name) return crossings;
-  }
-  return std::nullopt;
+  return ValueOfName<Crossings>(kCrossingsNames, name);
 }
 
 std::string_view CrossingsName(Crossings crossings) {
-  switch (crossings) {
-    case Crossings::kKeep:
-      return "keep";
-    case Crossings::kFewer:
-      return "fewer";
-    case Crossings::kAny:
-      return "any";
-  }
-  return "";
+  return kCrossingsNames[static_cast<size_t>(crossings)];
 }
 
 }  // namespace traverse::gcode

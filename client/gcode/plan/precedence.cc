@@ -34,12 +34,6 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   Contacts contacts;
   DisjointSets regions(static_cast<int>(outlines.size()));
   absl::flat_hash_set<std::pair<uint32_t, uint32_t>> ordered;
-  const auto ascending = [](uint32_t i, uint32_t j) {
-    return std::pair<uint32_t, uint32_t>(std::min(i, j), std::max(i, j));
-  };
-  const auto keep_order = [&keeps_order](const std::pair<uint32_t, uint32_t>& pair) {
-    return keeps_order(pair.first, pair.second);
-  };
   const SegmentGrid grid(AllSegments(outlines),
                          std::max(kTouchMm, kTouch * WidestOf(outlines)) / kNearInCells);
   const auto reach = [&](uint32_t one, uint32_t other) {
@@ -48,10 +42,10 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   // Of most paths that touch nothing more is to be learnt: they do in many places.
   const size_t most_ordered = kMostOrderedEach * outlines.size();
   const auto wanted = [&](uint32_t one, uint32_t other) {
-    if (contacts.ordered.size() > most_ordered) return false;
+    if (ordered.size() > most_ordered) return false;
     if (!regions.AreJoined(static_cast<int>(one), static_cast<int>(other))) return true;
-    const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
-    return keep_order(pair) && !ordered.contains(pair);
+    const auto [first, second] = std::minmax(one, other);
+    return keeps_order(first, second) && !ordered.contains({first, second});
   };
   const auto look_at = [&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
@@ -59,18 +53,18 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     const double near = reach(one.path, other.path);
     if (SquaredDistance(one, other) > near * near) return true;
     regions.Join(static_cast<int>(one.path), static_cast<int>(other.path));
-    const std::pair<uint32_t, uint32_t> pair = ascending(one.path, other.path);
-    if (keep_order(pair) && ordered.insert(pair).second) contacts.ordered.push_back(pair);
+    const auto [first, second] = std::minmax(one.path, other.path);
+    if (keeps_order(first, second)) ordered.emplace(first, second);
     return false;
   };
   const double most = kMostPairsOfAll + kMostPairsEach * static_cast<double>(grid.entry_count());
   contacts.complete =
-      grid.ForEachNearPair(reach, wanted, look_at, most) && contacts.ordered.size() <= most_ordered;
+      grid.ForEachNearPair(reach, wanted, look_at, most) && ordered.size() <= most_ordered;
   if (!contacts.complete) {
-    contacts.ordered.clear();
     contacts.island.assign(outlines.size(), 0);
     return contacts;
   }
+  contacts.ordered.assign(ordered.begin(), ordered.end());
   std::sort(contacts.ordered.begin(), contacts.ordered.end());
   for (const int island : regions.Numbered()) {
     contacts.island.push_back(static_cast<uint32_t>(island));
