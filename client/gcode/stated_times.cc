@@ -12,6 +12,7 @@
 #include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/text/digest_line.h"
+#include "client/gcode/text/text.h"
 #include "client/gcode/verify/verifier.h"
 
 namespace traverse::gcode {
@@ -21,13 +22,6 @@ constexpr std::string_view kRestated = "times restated x";
 
 absl::string_view AsAbsl(std::string_view text) { return {text.data(), text.size()}; }
 
-std::string_view Trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
 // Seconds of a "1d 2h 3m 4s", of which any part may be missing.
 std::optional<int64_t> ParseDuration(std::string_view text) {
   constexpr std::string_view kUnits = "dhms";
@@ -36,7 +30,7 @@ std::optional<int64_t> ParseDuration(std::string_view text) {
   int64_t seconds = 0;
   size_t unit = 0;
   bool any = false;
-  while (!(text = Trim(text)).empty()) {
+  while (!(text = TrimBlanks(text)).empty()) {
     int64_t number = 0;
     size_t digits = 0;
     while (digits < text.size() && IsDigit(text[digits]) && number < kMost) {
@@ -50,6 +44,10 @@ std::optional<int64_t> ParseDuration(std::string_view text) {
     any = true;
   }
   return any ? std::optional(seconds) : std::nullopt;
+}
+
+int64_t Scaled(int64_t seconds, double factor) {
+  return std::llround(static_cast<double>(seconds) * factor);
 }
 
 // As slicers write it: from the first part that is not 0 on.
@@ -82,10 +80,7 @@ std::string WithScaled(std::string_view line, std::string_view value, double fac
   const std::optional<std::string> scaled = ScaleDuration(value, factor);
   if (!scaled) return std::string(line);
   const auto begin = static_cast<size_t>(value.data() - line.data());
-  std::string out(line.substr(0, begin));
-  out += *scaled;
-  out += line.substr(begin + value.size());
-  return out;
+  return std::string(line).replace(begin, value.size(), *scaled);
 }
 
 // `; model printing time: 1m 6s; total estimated time: 9m 3s`: the rest of the second, heating and
@@ -95,21 +90,20 @@ std::string RestateModelTime(std::string_view line, double factor) {
   constexpr std::string_view kTotal = "total estimated time:";
   const size_t model_begin = line.find(kModel) + kModel.size();
   const size_t model_end = line.find(';', model_begin);
-  const std::string_view model = Trim(line.substr(model_begin, model_end - model_begin));
+  const std::string_view model = TrimBlanks(line.substr(model_begin, model_end - model_begin));
   const std::optional<int64_t> model_seconds = ParseDuration(model);
   if (!model_seconds) return std::string(line);
-  const auto scaled =
-      static_cast<int64_t>(std::llround(static_cast<double>(*model_seconds) * factor));
   std::string out = WithScaled(line, model, factor);
   const size_t total_begin = out.find(kTotal);
   if (total_begin == std::string::npos) return out;
-  const std::string_view total = Trim(std::string_view(out).substr(total_begin + kTotal.size()));
+  const std::string_view total =
+      TrimBlanks(std::string_view(out).substr(total_begin + kTotal.size()));
   const std::optional<int64_t> total_seconds = ParseDuration(total);
   if (!total_seconds) return out;
   const auto at = static_cast<size_t>(total.data() - out.data());
-  return out.replace(
-      at, total.size(),
-      FormatDuration(std::max<int64_t>(0, *total_seconds - *model_seconds + scaled)));
+  return out.replace(at, total.size(),
+                     FormatDuration(std::max<int64_t>(
+                         0, *total_seconds - *model_seconds + Scaled(*model_seconds, factor))));
 }
 
 double ScaleOf(const TimeWord& stated, const TimeScale& scale) {
@@ -117,12 +111,12 @@ double ScaleOf(const TimeWord& stated, const TimeScale& scale) {
 }
 
 std::string RestateComment(std::string_view line, const TimeScale& scale) {
-  const std::string_view comment = Trim(line.substr(1));
+  const std::string_view comment = TrimBlanks(line.substr(1));
   if (comment.starts_with("model printing time:")) return RestateModelTime(line, scale.total);
   const TimeWord* stated = TimeOf(comment);
   const size_t mark = stated == nullptr ? comment.npos : comment.find_first_of(":=");
   if (mark == comment.npos) return std::string(line);
-  return WithScaled(line, Trim(comment.substr(mark + 1)), ScaleOf(*stated, scale));
+  return WithScaled(line, TrimBlanks(comment.substr(mark + 1)), ScaleOf(*stated, scale));
 }
 
 // Minutes left are whole ones, rounded down.
@@ -163,7 +157,7 @@ std::optional<std::string> ScaleClock(std::string_view clock, double factor) {
     const bool ends = i + 1 == clock.size() || clock[i + 1] == ':';
     if (ends) seconds = kBase * seconds + part;
   }
-  seconds = std::llround(static_cast<double>(seconds) * factor);
+  seconds = Scaled(seconds, factor);
   std::string scaled;
   for (size_t i = 0; i < parts; ++i, seconds /= kBase) {
     scaled = absl::StrFormat(":%02d", seconds % kBase) + scaled;
@@ -176,7 +170,7 @@ std::optional<std::string> ScaleSpan(std::string_view span, double factor) {
   std::optional<std::string> scaled =
       ParseDuration(span) ? ScaleDuration(span, factor) : std::nullopt;
   if (scaled && span.find(' ') == std::string_view::npos) {
-    scaled->erase(std::remove(scaled->begin(), scaled->end(), ' '), scaled->end());
+    std::erase(*scaled, ' ');
   }
   return scaled;
 }
@@ -191,13 +185,10 @@ std::string RestateMessage(std::string_view line, double factor) {
     // A blank may also end it.
     size_t end = std::min(line.find_first_not_of(kOfTimes, at), line.size());
     for (; end > at; end = line.find_last_of(' ', end - 1)) {
-      const std::string_view time = Trim(line.substr(at, end - at));
+      const std::string_view time = TrimBlanks(line.substr(at, end - at));
       std::optional<std::string> scaled = ScaleClock(time, factor);
       if (!scaled) scaled = ScaleSpan(time, factor);
-      if (scaled) {
-        return std::string(line.substr(0, at)) + *scaled +
-               std::string(line.substr(at + time.size()));
-      }
+      if (scaled) return std::string(line).replace(at, time.size(), *scaled);
       if (line.find_last_of(' ', end - 1) == std::string_view::npos) break;
     }
   }
@@ -273,7 +264,7 @@ std::optional<TimeScale> StatedScale(std::string_view text) {
 
 std::optional<std::string> ScaleDuration(std::string_view value, double factor) {
   if (const std::optional<int64_t> seconds = ParseDuration(value)) {
-    return FormatDuration(std::llround(static_cast<double>(*seconds) * factor));
+    return FormatDuration(Scaled(*seconds, factor));
   }
   return ScaleNumber(value, factor);
 }
@@ -298,7 +289,8 @@ std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
 std::optional<std::string> RestateEntry(std::string_view key, std::string_view value,
                                         const TimeScale& scale) {
   const TimeWord* stated = TimeOf(key);
-  return stated == nullptr ? std::nullopt : ScaleDuration(Trim(value), ScaleOf(*stated, scale));
+  return stated == nullptr ? std::nullopt
+                           : ScaleDuration(TrimBlanks(value), ScaleOf(*stated, scale));
 }
 
 }  // namespace traverse::gcode

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "absl/container/inlined_vector.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/part_links.h"
 
@@ -89,6 +90,11 @@ constexpr double kUsualThresholdMm = 1.5;
 // Straight unretracted moves across walls that show the shortest retracted is no accident.
 constexpr int64_t kEnough = 3;
 
+// Its travel is longer than a straight line of that length.
+bool IsBent(const Block& block, double straight_mm) {
+  return static_cast<double>(block.travel_mm) > straight_mm * 1.01 + 0.01;
+}
+
 double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) {
   if (file.profile.retract_before_travel) return *file.profile.retract_before_travel;
   double shortest = 1e9;
@@ -103,9 +109,8 @@ double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) 
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
     ForEachTravel(file, file.layers[i], [&](const Block& block, Point from, Point to, uint32_t) {
       const double length = Distance(from, to);
-      const bool straight = static_cast<double>(block.travel_mm) < length * 1.01 + 0.01;
-      if ((block.link & kLinkRetracts) == 0 && straight && length > kUsualThresholdMm &&
-          length < shortest && walls.Crossed(from, to)) {
+      if ((block.link & kLinkRetracts) == 0 && !IsBent(block, length) &&
+          length > kUsualThresholdMm && length < shortest && walls.Crossed(from, to)) {
         ++crossing;
       }
     });
@@ -132,7 +137,7 @@ bool AvoidsWalls(const GcodeFile& file) {
     ForEachTravel(file, file.layers[i], [&](const Block& block, Point from, Point to, uint32_t) {
       if (!walls.Crossed(from, to)) return;
       ++crossing;
-      bent += static_cast<double>(block.travel_mm) > Distance(from, to) * 1.01 + 0.01 ? 1 : 0;
+      if (IsBent(block, Distance(from, to))) ++bent;
     });
   }
   return bent >= kEnough && bent * 4 >= crossing;
@@ -147,6 +152,12 @@ double BesideWallsMm(const std::vector<Outline>& outlines) {
     if (IsVisibleWall(outline.feature)) widest = std::max(widest, outline.width_mm);
   }
   return std::max(widest / 2 + kMoreThanHalfMm, Detours::kBesideMm);
+}
+
+double LengthOf(absl::Span<const Point> line) {
+  double length = 0;
+  for (size_t i = 1; i < line.size(); ++i) length += Distance(line[i - 1], line[i]);
+  return length;
 }
 
 }  // namespace
@@ -229,19 +240,17 @@ bool TravelRules::Hides(Point a, Point b, Feature feature) const {
 bool TravelRules::Hides(absl::Span<const Point> line, Feature feature) const {
   assert(line.size() >= 2);
   if (habit_.hidden == nullptr || IsVisibleWall(feature)) return false;
-  double length = 0;
   for (size_t i = 1; i < line.size(); ++i) {
     if (walls_.Crossed(line[i - 1], line[i])) return false;
     const bool leaves_wall = i == 1 && walls_.IsOnOne(line[0]);
     if (!habit_.hidden->Hides(layer_, line[i - 1], line[i], leaves_wall)) return false;
-    length += Distance(line[i - 1], line[i]);
   }
-  return length <= habit_.hidden->longest_mm();
+  return LengthOf(line) <= habit_.hidden->longest_mm();
 }
 
 std::vector<Point> TravelRules::HiddenBends(Point a, Point b, Feature feature) const {
   if (!within_ || IsVisibleWall(feature) || Distance(a, b) > habit_.hidden->longest_mm()) return {};
-  if (!habit_.hidden->Hides(layer_, b)) return {};
+  if (!habit_.hidden->Hides(layer_, b, b, /*leaves_wall=*/false)) return {};
   std::vector<Point> line = within_->Around(a, b);
   if (line.empty()) return {};
   line.insert(line.begin(), a);
@@ -254,21 +263,14 @@ PlannedTravel TravelRules::TravelOf(Point a, Point b, Feature feature) const {
   PlannedTravel travel;
   travel.from = a;
   travel.to = b;
-  travel.mm = Distance(a, b);
   travel.crosses = walls_.Crossed(a, b);
-  const Point straight[] = {a, b};
-  absl::Span<const Point> line = straight;
-  std::vector<Point> bent;
+  absl::InlinedVector<Point, 2> line = {a, b};
   if (travel.crosses && detours_) {
     travel.via = detours_->Around(a, b);
     travel.crosses = travel.via.empty();
-    bent = {a};
-    bent.insert(bent.end(), travel.via.begin(), travel.via.end());
-    bent.push_back(b);
-    line = bent;
-    travel.mm = 0;
-    for (size_t i = 1; i < bent.size(); ++i) travel.mm += Distance(bent[i - 1], bent[i]);
+    line.insert(line.end() - 1, travel.via.begin(), travel.via.end());
   }
+  travel.mm = LengthOf(line);
   if (!habit_.retracts) return travel;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   travel.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
