@@ -147,16 +147,7 @@ class LayerTally {
       const Obstacle obstacle = ObstacleIn(file_, block);
       if (obstacle.at != UINT32_MAX) return Note(obstacle.cause, kept, obstacle.at);
     }
-    if (!fans_are_free_ && FanChanges(block)) Note(kFanChange, kept, UINT32_MAX);
-  }
-
-  bool FanChanges(uint32_t block) const {
-    const PrintState& before = file_.states[file_.blocks[block - 1].state_in];
-    const PrintState& behind = file_.states[file_.blocks[block].state_in];
-    for (size_t slot = 0; slot < kSlotCount; ++slot) {
-      if (((kFanSlots >> slot) & 1u) != 0 && before[slot] != behind[slot]) return true;
-    }
-    return false;
+    if (!fans_are_free_ && FanChanges(file_, block)) Note(kFanChange, kept, UINT32_MAX);
   }
 
   static bool IsSupport(Feature feature) {

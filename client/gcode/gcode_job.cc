@@ -186,7 +186,7 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);
     notes.feature.push_back(static_cast<uint16_t>(feature));
-    notes.island.push_back(planned.island[path] + 1);
+    notes.island.push_back(planned.freedom.island[path] + 1);
     ++census.paths[feature];
     census.printed_mm[feature] +=
         static_cast<double>(file.blocks[layer.first_block + path].length_mm);

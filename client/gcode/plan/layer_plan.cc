@@ -1,7 +1,6 @@
 #include "client/gcode/plan/layer_plan.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -21,63 +20,39 @@ bool StatesEachFan(const GcodeFile& file, const Layer& layer) {
   return true;
 }
 
-class LayerPlanner {
- public:
-  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, const Allowance& allow)
-      : file_(file),
-        policy_(policy),
-        fan_order_(allow.fan_order),
-        fans_of_paths_(StatesEachFan(file, layer)) {
-    result_.outlines = OutlinesOf(file, layer);
-    paths_.emplace(file, layer, policy, allow, result_.outlines);
+// What may change in a layer whose paths have these outlines.
+LayerFreedom FreedomWith(const GcodeFile& file, const Layer& layer,
+                         const std::vector<Outline>& outlines, Policy policy,
+                         const Allowance& allow) {
+  LayerFreedom freedom;
+  const PathRules paths(file, layer, policy, allow, outlines);
+  for (size_t path = 0; path < outlines.size(); ++path) {
+    freedom.rules.push_back(paths.RuleOf(path));
   }
-
-  LayerPlan Make();
-
- private:
-  const Block& BlockOf(size_t path) const { return paths_->BlockOf(path); }
-  Feature FeatureOf(size_t path) const { return paths_->FeatureOf(path); }
-  size_t size() const { return result_.outlines.size(); }
-
-  const std::vector<PathRule>& rules() const { return result_.freedom.rules; }
-
-  bool BeginsGroup(size_t path) const;
-
-  void AddPath(size_t path);
-  uint32_t AddNode(uint32_t parent);
-  bool GoesWithBefore(size_t path) const;
-  void AddLeaf(uint32_t parent, size_t path);
-  void AddGroup(size_t begin, size_t end);
-  using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;
-  std::pair<Pairs::const_iterator, Pairs::const_iterator> PairsFrom(size_t begin, size_t end) const;
-
-  const GcodeFile& file_;
-  const Policy policy_;
-  const bool fan_order_;
-  const bool fans_of_paths_;
-  Contacts contacts_;
-  std::vector<uint32_t> position_;  // [path] among the children of its any_order
-  LayerPlan result_;
-  std::optional<PathRules> paths_;  // of result_.outlines
-};
-
-bool LayerPlanner::BeginsGroup(size_t path) const {
-  if (path == 0 || rules()[path].pinned || rules()[path - 1].pinned) return true;
-  if (IsBoundary(BlockOf(path))) return true;
-  if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
-  if (IsFree(policy_) || fan_order_ || fans_of_paths_) return false;
-  const PrintState& state = file_.states[BlockOf(path).state_in];
-  const PrintState& before = file_.states[BlockOf(path - 1).state_in];
-  for (size_t slot = 0; slot < kSlotCount; ++slot) {
-    if (((kFanSlots >> slot) & 1u) != 0 && state[slot] != before[slot]) return true;
+  Contacts contacts =
+      FindContacts(outlines, [&](uint32_t i, uint32_t j) { return paths.KeepsOrder(i, j); });
+  freedom.island = std::move(contacts.island);
+  freedom.ordered = std::move(contacts.ordered);
+  const bool any_fan = IsFree(policy) || allow.fan_order || StatesEachFan(file, layer);
+  const auto is = [&](uint32_t path, Feature feature) { return outlines[path].feature == feature; };
+  const auto begins_group = [&](uint32_t path) {
+    if (path == 0 || freedom.rules[path].pinned || freedom.rules[path - 1].pinned) return true;
+    const uint32_t block = layer.first_block + path;
+    return IsBoundary(file.blocks[block]) ||
+           is(path, Feature::kSkirt) != is(path - 1, Feature::kSkirt) ||
+           (!any_fan && FanChanges(file, block));
+  };
+  for (uint32_t path = 0; path < outlines.size(); ++path) {
+    const bool begins = !contacts.complete || begins_group(path);
+    freedom.group.push_back(begins ? path : freedom.group.back());
+    freedom.goes_on.push_back(!begins && is(path, Feature::kIroning) &&
+                              is(path - 1, Feature::kIroning));
   }
-  return false;
+  return freedom;
 }
 
-void LayerPlanner::AddPath(size_t path) {
-  const Outline& outline = result_.outlines[path];
-  const PathRule& rule = rules()[path];
-  v1::PlanPath& added = *result_.plan.add_paths();
+v1::PlanPath PlanPathOf(const Outline& outline, const PathRule& rule, size_t path) {
+  v1::PlanPath made;
   const auto add_points = [&outline](size_t count, auto& message) {
     message.mutable_points()->Reserve(static_cast<int>(2 * count));
     for (size_t k = 0; k < count; ++k) {
@@ -86,23 +61,28 @@ void LayerPlanner::AddPath(size_t path) {
     }
   };
   if (rule.contour) {
-    v1::Contour& contour = *added.mutable_contour();
+    v1::Contour& contour = *made.mutable_contour();
     contour.set_id(path + 1);
     add_points(outline.points.size() - 1, contour);
     contour.mutable_entries()->Add(rule.entries.begin(), rule.entries.end());
   } else {
-    v1::OpenPath& open = *added.mutable_open_path();
+    v1::OpenPath& open = *made.mutable_open_path();
     open.set_id(path + 1);
     add_points(outline.points.size(), open);
     open.set_one_way(rule.one_way);
   }
+  return made;
+}
+
+v1::PlanNode& NodeOf(v1::Plan& plan, uint32_t index) {
+  return *plan.mutable_nodes(static_cast<int>(index));
 }
 
 // Adds a node and makes it the last child of `parent`.
-uint32_t LayerPlanner::AddNode(uint32_t parent) {
-  const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
-  result_.plan.add_nodes();
-  v1::PlanNode& node = *result_.plan.mutable_nodes(static_cast<int>(parent));
+uint32_t AddNode(uint32_t parent, v1::Plan& plan) {
+  const auto index = static_cast<uint32_t>(plan.nodes_size());
+  plan.add_nodes();
+  v1::PlanNode& node = NodeOf(plan, parent);
   if (node.has_in_order()) {
     node.mutable_in_order()->add_children(index);
   } else {
@@ -111,97 +91,74 @@ uint32_t LayerPlanner::AddNode(uint32_t parent) {
   return index;
 }
 
-std::pair<LayerPlanner::Pairs::const_iterator, LayerPlanner::Pairs::const_iterator>
-LayerPlanner::PairsFrom(size_t begin, size_t end) const {
-  const auto from = [this](size_t path) {
-    return std::lower_bound(contacts_.ordered.begin(), contacts_.ordered.end(),
-                            std::pair<uint32_t, uint32_t>(static_cast<uint32_t>(path), 0u));
-  };
-  return {from(begin), from(end)};
-}
-
-// True if `path` and the one before it are lines of ironing.
-bool LayerPlanner::GoesWithBefore(size_t path) const {
-  return FeatureOf(path) == Feature::kIroning && FeatureOf(path - 1) == Feature::kIroning;
-}
-
-void LayerPlanner::AddLeaf(uint32_t parent, size_t path) {
-  const uint32_t leaf = AddNode(parent);
-  result_.plan.mutable_nodes(static_cast<int>(leaf))->set_path(static_cast<uint32_t>(path));
-}
-
-void LayerPlanner::AddGroup(size_t begin, size_t end) {
-  const uint32_t group = AddNode(0);
-  if (end - begin == 1) {
-    result_.plan.mutable_nodes(static_cast<int>(group))->set_path(static_cast<uint32_t>(begin));
-    return;
-  }
-  result_.movable += static_cast<int64_t>(end - begin);
-  result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  uint32_t units = 0;
-  for (size_t path = begin; path < end;) {
-    size_t behind = path + 1;
-    for (; behind < end && GoesWithBefore(behind); ++behind) {
-      result_.freedom.goes_on[behind] = true;
-    }
+// Adds the paths [begin, end), which may change places.
+void AddGroup(uint32_t begin, uint32_t end, const LayerFreedom& freedom, v1::Plan& plan) {
+  const uint32_t group = AddNode(0, plan);
+  NodeOf(plan, group).mutable_any_order();
+  std::vector<uint32_t> position;  // [path - begin] among the children of the group
+  for (uint32_t path = begin; path < end;) {
+    const auto unit = static_cast<uint32_t>(NodeOf(plan, group).any_order().children_size());
+    uint32_t behind = path + 1;
+    while (behind < end && freedom.goes_on[behind]) ++behind;
     uint32_t parent = group;
     if (behind - path > 1) {
-      parent = AddNode(group);
-      result_.plan.mutable_nodes(static_cast<int>(parent))->mutable_in_order();
+      parent = AddNode(group, plan);
+      NodeOf(plan, parent).mutable_in_order();
     }
     for (; path < behind; ++path) {
-      position_[path] = units;
-      AddLeaf(parent, path);
+      position.push_back(unit);
+      NodeOf(plan, AddNode(parent, plan)).set_path(path);
     }
-    ++units;
   }
-  v1::AnyOrder& any = *result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  const auto [first, last] = PairsFrom(begin, end);
+  v1::AnyOrder& any = *NodeOf(plan, group).mutable_any_order();
   std::set<std::pair<uint32_t, uint32_t>> known;
-  for (auto pair = first; pair != last; ++pair) {
+  auto pair = std::ranges::lower_bound(freedom.ordered, std::pair(begin, 0u));
+  for (; pair != freedom.ordered.end() && pair->first < end; ++pair) {
     if (pair->second >= end) continue;
-    const std::pair<uint32_t, uint32_t> units_of(position_[pair->first], position_[pair->second]);
-    if (units_of.first == units_of.second || !known.insert(units_of).second) continue;
+    const std::pair units(position[pair->first - begin], position[pair->second - begin]);
+    if (units.first == units.second || !known.insert(units).second) continue;
     v1::Precedence& before = *any.add_before();
-    before.set_first(units_of.first);
-    before.set_second(units_of.second);
+    before.set_first(units.first);
+    before.set_second(units.second);
   }
-}
-
-LayerPlan LayerPlanner::Make() {
-  position_.resize(size());
-  LayerFreedom& freedom = result_.freedom;
-  freedom.rules.reserve(size());
-  for (size_t path = 0; path < size(); ++path) freedom.rules.push_back(paths_->RuleOf(path));
-  contacts_ = FindContacts(result_.outlines,
-                           [this](uint32_t i, uint32_t j) { return paths_->KeepsOrder(i, j); });
-  result_.island = contacts_.island;
-  freedom.island = contacts_.island;
-  freedom.ordered = contacts_.ordered;
-  freedom.goes_on.assign(size(), false);
-  freedom.group.reserve(size());
-  result_.plan.add_nodes()->mutable_in_order();
-  for (size_t path = 0; path < size(); ++path) AddPath(path);
-  for (size_t begin = 0; begin < size();) {
-    size_t end = begin + 1;
-    while (end < size() && contacts_.complete && !BeginsGroup(end)) ++end;
-    freedom.group.resize(end, static_cast<uint32_t>(begin));
-    AddGroup(begin, end);
-    begin = end;
-  }
-  return std::move(result_);
 }
 
 }  // namespace
 
+bool FanChanges(const GcodeFile& file, uint32_t block) {
+  const PrintState& before = file.states[file.blocks[block - 1].state_in];
+  const PrintState& behind = file.states[file.blocks[block].state_in];
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((kFanSlots >> slot) & 1u) != 0 && before[slot] != behind[slot]) return true;
+  }
+  return false;
+}
+
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
                         const Allowance& allow) {
-  return LayerPlanner(file, layer, policy, allow).Make();
+  LayerPlan made;
+  made.outlines = OutlinesOf(file, layer);
+  made.freedom = FreedomWith(file, layer, made.outlines, policy, allow);
+  const auto paths = static_cast<uint32_t>(made.outlines.size());
+  for (uint32_t path = 0; path < paths; ++path) {
+    *made.plan.add_paths() = PlanPathOf(made.outlines[path], made.freedom.rules[path], path);
+  }
+  made.plan.add_nodes()->mutable_in_order();
+  for (uint32_t begin = 0, end = 0; begin < paths; begin = end) {
+    while (end < paths && made.freedom.group[end] == begin) ++end;
+    if (end - begin == 1) {
+      NodeOf(made.plan, AddNode(0, made.plan)).set_path(begin);
+    } else {
+      AddGroup(begin, end, made.freedom, made.plan);
+      made.movable += end - begin;
+    }
+  }
+  return made;
 }
 
 LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
                        const Allowance& allow) {
-  return std::move(MakeLayerPlan(file, layer, policy, allow).freedom);
+  return FreedomWith(file, layer, OutlinesOf(file, layer), policy, allow);
 }
 
 }  // namespace traverse::gcode

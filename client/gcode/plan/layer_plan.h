@@ -25,10 +25,12 @@ namespace traverse::gcode {
 struct LayerPlan {
   v1::Plan plan;
   std::vector<Outline> outlines;  // [path]
-  std::vector<uint32_t> island;   // [path] the connected region of the layer that it lies in
   int64_t movable = 0;            // paths that may change places with another one
   LayerFreedom freedom;           // what the plan allows
 };
+
+// Whether the fan turns otherwise at `block` than at the block before it. REQUIRES: block > 0.
+bool FanChanges(const GcodeFile& file, uint32_t block);
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
                         const Allowance& allow = {});

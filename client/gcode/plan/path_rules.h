@@ -25,10 +25,9 @@ class PathRules {
   // True if paths `i` and `j`, which touch, keep their sliced order.
   bool KeepsOrder(size_t i, size_t j) const;
 
+ private:
   Feature FeatureOf(size_t path) const { return outlines_[path].feature; }
   const Block& BlockOf(size_t path) const { return file_.blocks[first_block_ + path]; }
-
- private:
   bool IsPinned(size_t path) const;
   bool MayBeginAnywhere(size_t path) const;
   bool MayTurnRound(size_t path) const;

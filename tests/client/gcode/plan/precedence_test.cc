@@ -23,8 +23,8 @@ TEST(Precedence, PathsOfDifferentFeaturesThatTouchKeepTheirOrder) {
   const LayerPlan plan = sheet.Plan();
 
   EXPECT_THAT(Pairs(plan.plan), UnorderedElementsAre(Pair(1, 2), Pair(1, 3), Pair(4, 5)));
-  EXPECT_EQ(plan.island[1], plan.island[3]);
-  EXPECT_NE(plan.island[1], plan.island[4]);
+  EXPECT_EQ(plan.freedom.island[1], plan.freedom.island[3]);
+  EXPECT_NE(plan.freedom.island[1], plan.freedom.island[4]);
 }
 
 TEST(Precedence, NestedWallsKeepTheirOrderUnlessFree) {
