@@ -195,10 +195,6 @@ std::string Quoted(const GcodeFile& file, Offset at) {
                       "`");
 }
 
-std::string Place(const GcodeFile& file, Offset at) {
-  return absl::StrFormat("%s:%d", file.name, file.LineNumber(at));
-}
-
 // What holds paths, and what would let them move. `$0` is the first line that does it, `$1` its
 // place.
 struct CauseWords {
@@ -267,7 +263,7 @@ std::string WithoutLine(const GcodeFile& file, Offset at) {
 std::string TextOf(const GcodeFile& file, Policy policy, Cause cause, const Tallies& tallies) {
   const Tally& tally = tallies.of[cause];
   const bool line = tally.at != UINT32_MAX;
-  const std::string place = line ? Place(file, tally.at) : "";
+  const std::string place = line ? file.Place(tally.at) : "";
   std::string text =
       absl::StrCat(Counted(tally.paths, "path"), " in ", Counted(tally.layers, "layer"), " ") +
       absl::Substitute(tally.paths == 1 ? OfOne(kWords[cause].holds) : kWords[cause].holds,
@@ -347,7 +343,7 @@ std::vector<std::string> DescribeOddLines(const GcodeFile& file) {
     if (odd.count == 0) return;
     const std::string_view words = odd.count == 1 ? one : more;
     lines.push_back(absl::StrCat(odd.count, " ", std::string(words), " (first in ",
-                                 gcode::Place(file, odd.at), ")", why));
+                                 file.Place(odd.at), ")", why));
   };
   const auto segments = static_cast<int64_t>(file.ends.size());
   if (file.relative_moves.count > segments) {

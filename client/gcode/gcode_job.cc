@@ -54,8 +54,7 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
   time.set_wall_slack_mm(VisibleWalls::kEndSlackMm);
   if (habit.avoids_walls) time.set_wall_clearance_mm(Detours::kBesideMm);
   time.set_exposed_retraction_threshold_mm(std::min(habit.threshold_mm, kNeverMm));
-  time.set_wall_retraction_threshold_mm(
-      habit.spares_walls ? 0 : std::min(habit.threshold_mm, kNeverMm));
+  time.set_wall_retraction_threshold_mm(0);
   if (habit.crossing_matters) {
     time.set_retraction_threshold_mm(
         std::min(std::max(habit.longest_open_mm, habit.threshold_mm), kNeverMm));
@@ -83,16 +82,14 @@ void SetWiped(const GcodeFile& file, const Layer& of_file, const RetractionHabit
 
 void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
               const std::vector<Outline>& outlines, v1::Layer& layer) {
-  for (size_t path = 0; path < outlines.size() && habit.crossing_matters; ++path) {
-    if (!rules.AlwaysRetracts(outlines[path].feature)) continue;
-    layer.add_exposed_paths(static_cast<uint32_t>(path));
-  }
-  // Those to and from where nothing is hidden, and visible walls.
-  for (size_t path = 0; path < outlines.size() && habit.hidden && !habit.crossing_matters; ++path) {
+  for (uint32_t path = 0; path < outlines.size(); ++path) {
     const Outline& outline = outlines[path];
     const auto seen = [&](Point at) { return !rules.Hides(at, at, outline.feature); };
-    if (!seen(outline.points.front()) && !seen(outline.points.back())) continue;
-    layer.add_exposed_paths(static_cast<uint32_t>(path));
+    // Those to and from where nothing is hidden, and visible walls, if all others do not retract.
+    const bool exposed = habit.crossing_matters ? rules.AlwaysRetracts(outline.feature)
+                                                : habit.hidden && (seen(outline.points.front()) ||
+                                                                   seen(outline.points.back()));
+    if (exposed) layer.add_exposed_paths(path);
   }
   for (const Wall& visible : VisibleWallsOf(outlines)) {
     v1::Wall& wall = *layer.add_walls();
@@ -136,7 +133,7 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     v1::KnownMove& move = *layer.add_known_moves();
     move.set_from(b - 1 - of_file.first_block);
     move.set_to(b - of_file.first_block);
-    move.set_seconds(seconds < kMostKnownSeconds ? seconds : kMostKnownSeconds);
+    move.set_seconds(std::min(kMostKnownSeconds, seconds));
     move.set_crosses(boundary ? planned_travel.crosses : MeasureLink(file, b, walls).crossings > 0);
     move.set_retracts(retracts);
   }
@@ -170,7 +167,7 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   LayerPlan planned = MakeLayerPlan(file, layer, options.policy, options.allow);
   v1::Layer& filled = job.layers[index];
   filled.set_id(index + 1);
-  filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
+  filled.set_z_mm(file.HeightMm(layer));
   *filled.mutable_plan() = std::move(planned.plan);
   SetCost(habits.travel[index], *filled.mutable_cost());
   // Fewer than the file has cannot be had.

@@ -167,8 +167,7 @@ class LayerLines {
     for (size_t i = 0; i < chosen.texts.size(); ++i) {
       const LayerText& text = chosen.texts[i];
       begins_.push_back(line);
-      line += LinesIn(text.travel);
-      paths_.push_back(line);
+      begins_.push_back(line += LinesIn(text.travel));
       line += LinesIn(text.paths.empty() ? file.PathsText(file.layers[i]) : text.paths);
     }
   }
@@ -180,16 +179,16 @@ class LayerLines {
   };
 
   Place Find(size_t line) const {
-    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), line);
-    const size_t layer =
-        behind == begins_.begin() ? 0 : static_cast<size_t>(behind - begins_.begin()) - 1;
-    const bool travel = line < paths_[layer];
-    return {layer, travel, travel ? 0 : line - paths_[layer]};
+    // What stands before all layers is on the way to the first one.
+    const auto behind = std::upper_bound(begins_.begin() + 1, begins_.end(), line);
+    const auto part = static_cast<size_t>(behind - begins_.begin()) - 1;
+    const bool travel = part % 2 == 0;
+    return {part / 2, travel, travel ? 0 : line - begins_[part]};
   }
 
  private:
-  std::vector<size_t> begins_;  // [layer] number of the first line of the travel to it
-  std::vector<size_t> paths_;   // and of its paths
+  // [2 * layer] number of the first line of the travel to it; [2 * layer + 1] and of its paths
+  std::vector<size_t> begins_;
 };
 
 // Writes a file, looks for what breaks a rule of the verifier, rules that out and writes it again,
@@ -273,24 +272,16 @@ class Rewriter {
       if (chooser_.IsGivenUp(layer)) ++rewrite.layers_unproven;
     }
     if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
-    NoteUnclear(rewrite);
-    rewrite.layers_blocked = static_cast<int64_t>(chosen.blocked.size());
-    if (!chosen.blocked.empty()) {
-      rewrite.blocked = PlaceOf(file_.blocks[file_.layers[chosen.blocked[0]].first_block].begin);
-    }
-    rewrite.odd_lines = DescribeOddLines(file_);
-  }
-
-  std::string PlaceOf(gcode::Offset at) const {
-    return absl::StrCat(file_.name, ":", file_.LineNumber(at));
-  }
-
-  void NoteUnclear(GcodeRewrite& rewrite) const {
     for (const Layer& layer : file_.layers) {
       if (layer.fault == nullptr || rewrite.layers_unclear++ > 0) continue;
-      rewrite.unclear =
-          absl::StrFormat("%s:%d: %s", file_.name, file_.LineNumber(layer.fault_at), layer.fault);
+      rewrite.unclear = absl::StrCat(file_.Place(layer.fault_at), ": ", layer.fault);
     }
+    rewrite.layers_blocked = static_cast<int64_t>(chosen.blocked.size());
+    if (!chosen.blocked.empty()) {
+      const Layer& first = file_.layers[chosen.blocked.front()];
+      rewrite.blocked = file_.Place(file_.blocks[first.first_block].begin);
+    }
+    rewrite.odd_lines = DescribeOddLines(file_);
   }
 
   absl::StatusOr<GcodeRewrite> Finish(const std::string& head, GcodeRewrite rewrite) const {
@@ -322,24 +313,23 @@ class Rewriter {
   void RuleOut(const std::vector<VerifyBreak>& breaks, const LayerLines& lines, int round) {
     bool any = false;
     for (const VerifyBreak& found : breaks) {
-      const size_t layer = lines.Find(found.optimised_line).layer;
+      const LayerLines::Place at = lines.Find(found.optimised_line);
       const bool other_print = found.rule == VerifyRule::kSamePrint;
       if (round >= kRoundsOfLayers) {
-        any |= other_print ? RuleOutFrom(layer) : RuleOutAround(layer);
+        any |= other_print ? RuleOutFrom(at.layer) : RuleOutAround(at.layer);
       } else if (other_print) {
-        any |= chooser_.RuleOutStarts(layer) || RuleOutAround(layer);
+        any |= chooser_.RuleOutStarts(at.layer) || RuleOutAround(at.layer);
       } else {
-        any |= RuleOutOrder(found, lines) ||
-               RuleOut(found.rule, lines.Find(found.optimised_line)) || RuleOutAround(layer);
+        any |= RuleOutOrder(found, at, lines) || RuleOut(found.rule, at) || RuleOutAround(at.layer);
       }
     }
     if (!any || round + 1 >= kMostRounds) RuleOutFrom(0);
   }
 
   // That one path comes before another one of its layer.
-  bool RuleOutOrder(const VerifyBreak& found, const LayerLines& lines) {
+  bool RuleOutOrder(const VerifyBreak& found, const LayerLines::Place& at,
+                    const LayerLines& lines) {
     if (found.before_line == 0) return false;
-    const LayerLines::Place at = lines.Find(found.optimised_line);
     const LayerLines::Place before = lines.Find(found.before_line);
     return !at.travel && !before.travel && at.layer == before.layer &&
            chooser_.RuleOutOrder(at.layer, at.line, before.line);

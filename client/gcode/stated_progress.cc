@@ -41,16 +41,13 @@ std::vector<std::string> DescribeProgressFaults(const GcodeFile& file) {
   if (shares.empty()) return {};
   const gcode::Offset end = file.blocks.back().end;
   moments.offsets.push_back(file.text.size());
-  const auto place = [&file](const gcode::StatedShare& share) {
-    return absl::StrFormat("%s:%d", file.name, file.LineNumber(share.at));
-  };
   std::vector<std::string> faults;
   for (size_t i = 1; i < shares.size(); ++i) {
     if (shares[i].percent >= shares[i - 1].percent || shares[i].at >= end) continue;
     faults.push_back(absl::StrFormat(
         "M73 goes back from %.0f to %.0f %% in %s; such lines keep their sequence, and their share "
         "of the time",
-        shares[i - 1].percent, shares[i].percent, place(shares[i])));
+        shares[i - 1].percent, shares[i].percent, file.Place(shares[i].at)));
     break;
   }
   gcode::MeasureMoments(file, file.text, gcode::StartOfFile(file), &moments);
@@ -69,7 +66,7 @@ std::vector<std::string> DescribeProgressFaults(const GcodeFile& file) {
   if (worst != nullptr) {
     faults.push_back(absl::StrFormat(
         "M73 states %.0f %% at about %.0f %% of the print time in %s; it stays as far off",
-        worst->percent, worst_percent, place(*worst)));
+        worst->percent, worst_percent, file.Place(worst->at)));
   }
   return faults;
 }

@@ -12,20 +12,14 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kCellMm = 0.1;
-
 // Layers are thinner; what lies farther above or below is another object's.
 constexpr double kMostHeightMm = 1;
 
 // So far from its begin a move may be near the wall that it leaves.
 constexpr double kLeavingMm = 1;
 
-double HeightMm(const GcodeFile& file, const Layer& layer) {
-  return ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm();
-}
-
 bool Adjoin(const GcodeFile& file, size_t below, size_t above) {
-  const double mm = HeightMm(file, file.layers[above]) - HeightMm(file, file.layers[below]);
+  const double mm = file.HeightMm(file.layers[above]) - file.HeightMm(file.layers[below]);
   return mm > 0 && mm < kMostHeightMm;
 }
 
@@ -41,7 +35,7 @@ bool HasOneTool(const GcodeFile& file, const Layer& layer) {
 }  // namespace
 
 HiddenMoves::HiddenMoves(const GcodeFile& file, double longest_mm, int threads)
-    : longest_mm_(longest_mm), cell_mm_(kCellMm), layers_(file.layers.size()) {
+    : longest_mm_(longest_mm), layers_(file.layers.size()) {
   // The layers beside those of a run are looked at twice.
   constexpr size_t kRun = 16;
   ParallelFor((layers_.size() + kRun - 1) / kRun, threads, [&](size_t run) {
@@ -51,14 +45,12 @@ HiddenMoves::HiddenMoves(const GcodeFile& file, double longest_mm, int threads)
 
 HiddenMoves::HiddenMoves(const GcodeFile& file, double longest_mm,
                          const std::vector<size_t>& layers)
-    : longest_mm_(longest_mm), cell_mm_(kCellMm), layers_(file.layers.size()) {
+    : longest_mm_(longest_mm), layers_(file.layers.size()) {
   for (const size_t layer : layers) Fill(file, layer, layer + 1);
 }
 
 void HiddenMoves::Fill(const GcodeFile& file, size_t first, size_t end) {
-  const auto cover_of = [&](size_t layer) {
-    return CoverOf(OutlinesOf(file, file.layers[layer]), cell_mm_);
-  };
+  const auto cover_of = [&](size_t layer) { return CoverOf(OutlinesOf(file, file.layers[layer])); };
   LayerCover below;
   LayerCover here;
   if (first > 0) below = cover_of(first - 1);
@@ -87,8 +79,8 @@ bool HiddenMoves::Hides(size_t layer, Point a, Point b, bool leaves_wall) const 
   const double length = Distance(a, b);
   if (!(length <= longest_mm_)) return false;
   const LayerTiles& tiles = layers_[layer];
-  const Point from{a.x / cell_mm_, a.y / cell_mm_};
-  const Point to{b.x / cell_mm_, b.y / cell_mm_};
+  const Point from{a.x / kCoverCellMm, a.y / kCoverCellMm};
+  const Point to{b.x / kCoverCellMm, b.y / kCoverCellMm};
   // Farther off no layer has cells.
   constexpr double kFar = 1 << 29;
   for (const double at : {from.x, from.y, to.x, to.y}) {

@@ -34,9 +34,6 @@ class HiddenMoves {
 
   double longest_mm() const { return longest_mm_; }
 
-  // Whether a move could end at `at`.
-  bool Hides(size_t layer, Point at) const { return Hides(layer, at, at, false); }
-
  private:
   struct LayerTiles {
     CellTiles hidden;
@@ -46,7 +43,6 @@ class HiddenMoves {
   void Fill(const GcodeFile& file, size_t first, size_t end);
 
   const double longest_mm_;
-  double cell_mm_ = 0;
   std::vector<LayerTiles> layers_;
 };
 

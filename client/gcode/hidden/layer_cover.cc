@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "client/gcode/model/visible_walls.h"
+#include "engine/base/disjoint_sets.h"
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 namespace {
@@ -34,13 +36,13 @@ bool IsOfPart(const Outline& outline) {
          feature != Feature::kCustom;
 }
 
+Point InCells(Point mm) { return {mm.x / kCoverCellMm, mm.y / kCoverCellMm}; }
+
 struct Crossing {
   int row = 0;
   double x = 0;  // in cells
 
-  bool operator<(const Crossing& other) const {
-    return row != other.row ? row < other.row : x < other.x;
-  }
+  auto operator<=>(const Crossing&) const = default;
 };
 
 // Cells of a row in a row that no wall is near to.
@@ -52,8 +54,7 @@ struct FreeRun {
 
 class CoverMaker {
  public:
-  CoverMaker(const std::vector<Outline>& outlines, double cell_mm)
-      : outlines_(outlines), cell_mm_(cell_mm) {}
+  explicit CoverMaker(const std::vector<Outline>& outlines) : outlines_(outlines) {}
 
   LayerCover Make();
 
@@ -68,7 +69,6 @@ class CoverMaker {
   CellRows Inside(const CellRows& odd);
 
   const std::vector<Outline>& outlines_;
-  const double cell_mm_;
   CellBox box_;
   CellRows near_;
   CellRows near_open_;  // nobody knows on which side of an open wall the part is
@@ -78,24 +78,19 @@ class CoverMaker {
 };
 
 std::optional<CellBox> CoverMaker::Box() const {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Point low{kFar, kFar};
-  Point high{-kFar, -kFar};
+  BoundingBox bounds;
   size_t walls = 0;
   for (const Outline& outline : outlines_) {
     if (!IsWallOfPart(outline)) continue;
     ++walls;
-    for (const Point& point : outline.shape()) {
-      low = {std::min(low.x, point.x), std::min(low.y, point.y)};
-      high = {std::max(high.x, point.x), std::max(high.y, point.y)};
-    }
+    bounds.Add(BoundingBox(outline.shape()));
   }
   // Where there are more than can be printed in one place, some are left out.
   if (walls == 0 || VisibleWallsOf(outlines_).size() != walls) return std::nullopt;
   // A free cell at least is around all walls.
-  const double margin = kMostWidthMm + 3 * cell_mm_;
-  low = {(low.x - margin) / cell_mm_, (low.y - margin) / cell_mm_};
-  high = {(high.x + margin) / cell_mm_, (high.y + margin) / cell_mm_};
+  const double margin = kMostWidthMm + 3 * kCoverCellMm;
+  const Point low = InCells({bounds.low().x - margin, bounds.low().y - margin});
+  const Point high = InCells({bounds.high().x + margin, bounds.high().y + margin});
   constexpr double kMost = 1 << 29;
   if (low.x < -kMost || low.y < -kMost || high.x > kMost || high.y > kMost) return std::nullopt;
   if ((high.x - low.x) * (high.y - low.y) > kMostCells) return std::nullopt;
@@ -155,14 +150,13 @@ void CoverMaker::AddCrossings(Point a, Point b) {
 }
 
 void CoverMaker::AddWall(const Outline& wall, CellRows& lines) {
-  const double half = std::clamp(wall.width_mm, kLeastWidthMm, kMostWidthMm) / 2 / cell_mm_;
+  const double half = std::clamp(wall.width_mm, kLeastWidthMm, kMostWidthMm) / 2 / kCoverCellMm;
   constexpr double kHalfDiagonal = std::numbers::sqrt2 / 2;
   const std::vector<Point>& shape = wall.shape();
-  const auto in_cells = [this](Point at) { return Point{at.x / cell_mm_, at.y / cell_mm_}; };
   const size_t count = wall.is_loop ? shape.size() : shape.size() - 1;
   for (size_t i = 0; i < count; ++i) {
-    const Point a = in_cells(shape[i]);
-    const Point b = in_cells(shape[(i + 1) % shape.size()]);
+    const Point a = InCells(shape[i]);
+    const Point b = InCells(shape[(i + 1) % shape.size()]);
     AddLine(a, b, half + kHalfDiagonal, near_);
     if (!wall.is_loop) AddLine(a, b, half + kHalfDiagonal, near_open_);
     if (half > kHalfDiagonal) AddLine(a, b, half - kHalfDiagonal, lines);
@@ -185,8 +179,8 @@ CellRows CoverMaker::Odd() {
 CellRows CoverMaker::PointsOfPart() const {
   CellRows points(box_);
   const auto add = [&](double x, double y) {
-    const double column = std::floor(x / cell_mm_);
-    const double row = std::floor(y / cell_mm_);
+    const double column = std::floor(x / kCoverCellMm);
+    const double row = std::floor(y / kCoverCellMm);
     const double end = box_.column + static_cast<double>(box_.words) * CellRows::kWordCells;
     if (column < box_.column || column >= end || row < box_.row || row >= box_.row + box_.rows) {
       return;
@@ -231,12 +225,7 @@ void CoverMaker::FindRuns() {
 
 CellRows CoverMaker::Inside(const CellRows& odd) {
   FindRuns();
-  std::vector<uint32_t> parent(runs_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&parent](uint32_t run) {
-    while (parent[run] != run) run = parent[run] = parent[parent[run]];
-    return run;
-  };
+  DisjointSets areas(static_cast<int>(runs_.size()));
   for (size_t row = 1; row + 1 < first_of_row_.size(); ++row) {
     size_t above = first_of_row_[row - 1];
     for (size_t run = first_of_row_[row]; run < first_of_row_[row + 1];) {
@@ -244,25 +233,26 @@ CellRows CoverMaker::Inside(const CellRows& odd) {
       const FreeRun& a = runs_[above];
       const FreeRun& b = runs_[run];
       if (a.begin < b.end && b.begin < a.end) {
-        parent[root(static_cast<uint32_t>(run))] = root(static_cast<uint32_t>(above));
+        areas.Join(static_cast<int>(run), static_cast<int>(above));
       }
       a.end < b.end ? ++above : ++run;
     }
   }
   const CellRows points = PointsOfPart();
   enum : uint8_t { kPart = 1, kOutside = 2 };
-  std::vector<uint8_t> is(runs_.size());
+  const std::vector<int> area = areas.Numbered();  // [run]
+  std::vector<uint8_t> is(runs_.size());           // [area]
   const int behind = box_.column + box_.words * CellRows::kWordCells;
   for (size_t i = 0; i < runs_.size(); ++i) {
     const FreeRun& run = runs_[i];
-    uint8_t& of = is[root(static_cast<uint32_t>(i))];
+    uint8_t& of = is[static_cast<size_t>(area[i])];
     if (points.Any(run.row, run.begin, run.end)) of |= kPart;
     const bool at_edge = run.begin == box_.column || run.end == behind;
     if (at_edge || !odd.All(run.row, run.begin, run.end)) of |= kOutside;
   }
   CellRows inside(box_);
   for (size_t i = 0; i < runs_.size(); ++i) {
-    if (is[root(static_cast<uint32_t>(i))] != kPart) continue;
+    if (is[static_cast<size_t>(area[i])] != kPart) continue;
     inside.Set(runs_[i].row, runs_[i].begin, runs_[i].end);
   }
   return inside;
@@ -295,8 +285,6 @@ LayerCover CoverMaker::Make() {
 
 }  // namespace
 
-LayerCover CoverOf(const std::vector<Outline>& outlines, double cell_mm) {
-  return CoverMaker(outlines, cell_mm).Make();
-}
+LayerCover CoverOf(const std::vector<Outline>& outlines) { return CoverMaker(outlines).Make(); }
 
 }  // namespace traverse::gcode

@@ -10,6 +10,9 @@
 
 namespace traverse::gcode {
 
+// The cells are as large as that.
+inline constexpr double kCoverCellMm = 0.1;
+
 // In cells, each of which belongs to a set with all of its area.
 struct LayerCover {
   CellRows inside;  // within visible walls, and nowhere nearer than half a width to one
@@ -23,9 +26,9 @@ struct LayerCover {
 // or not, part it from what lies outside of all of them, and if anything of the part but such walls
 // is printed in it. So a hole counts as none of the part though its wall is printed in pieces,
 // and so does what lies between a part and a shield around it. Empty if the layer has no visible
-// walls, or too many in one place, or `cell_mm` makes too many cells of it. O(cells / 64 + n log n)
+// walls, or too many in one place, or is too large. O(cells / 64 + n log n)
 // for n cells on walls.
-LayerCover CoverOf(const std::vector<Outline>& outlines, double cell_mm);
+LayerCover CoverOf(const std::vector<Outline>& outlines);
 
 }  // namespace traverse::gcode
 

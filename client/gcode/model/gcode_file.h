@@ -178,8 +178,14 @@ struct GcodeFile {
   // Of the layer that block number `block` is in. O(log n) in the layers.
   size_t LayerOf(size_t block) const;
 
-  // Number of the line, from 1, that holds the byte at `offset`.
-  size_t LineNumber(gcode::Offset offset) const;
+  // The height of a layer in mm.
+  double HeightMm(const gcode::Layer& layer) const {
+    return gcode::ToDouble(layer.z) * modes[blocks[layer.first_block].mode].UnitMm();
+  }
+
+  // The name, and the number of the line, from 1, that holds the byte at `offset`:
+  // "part.gcode:118".
+  std::string Place(gcode::Offset offset) const;
 };
 
 }  // namespace traverse

@@ -5,6 +5,7 @@
 
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
+#include "engine/geometry/bounding_box.h"
 
 namespace traverse::gcode {
 namespace {
@@ -25,10 +26,6 @@ constexpr double kArcToleranceMm = 0.1;
 constexpr int64_t kMostSteps = 1'000'000'000;
 constexpr size_t kMostTiles = 12'000;  // 6.4 MB
 
-double HeightOf(const GcodeFile& file, const Layer& layer) {
-  return ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm();
-}
-
 // From a tower that lags behind the height goes up again at once: nothing is in the way up there.
 constexpr double kJumpMm = 3;
 
@@ -37,7 +34,7 @@ std::vector<size_t> PassesOf(const GcodeFile& file) {
   std::vector<size_t> passes;
   bool descends = false;
   for (size_t i = 1; i < file.layers.size(); ++i) {
-    const double rise = HeightOf(file, file.layers[i]) - HeightOf(file, file.layers[i - 1]);
+    const double rise = file.HeightMm(file.layers[i]) - file.HeightMm(file.layers[i - 1]);
     descends |= rise < 0;
     if (rise < 0 || rise > kJumpMm) passes.push_back(i);
   }
@@ -47,14 +44,12 @@ std::vector<size_t> PassesOf(const GcodeFile& file) {
 // Follows a file for both parts of the head.
 class Follower {
  public:
-  Follower(const GcodeFile& file, Point low, Point high)
+  Follower(const GcodeFile& file, const BoundingBox& bounds)
       : interpreter_(file.text),
-        tip_(
-            low, high,
-            {kTipCellMm, 0, kTipMm,
-             std::min(kTipMm + NozzleMm(file), file.profile.clearance_radius.value_or(kRadiusMm))}),
-        head_(low, high,
-              {kHeadCellMm, NozzleMm(file), RadiusMm(file), RadiusMm(file), kHeadCellMm}) {}
+        tip_(bounds, {kTipCellMm, 0, kTipMm,
+                      std::min(kTipMm + NozzleMm(file),
+                               file.profile.clearance_radius.value_or(kRadiusMm))}),
+        head_(bounds, {kHeadCellMm, NozzleMm(file), RadiusMm(file), RadiusMm(file), kHeadCellMm}) {}
 
   // Up to the line that begins at `end`.
   void FollowTo(Offset end) {
@@ -109,18 +104,11 @@ class Follower {
 
 HeadRoom::HeadRoom(const GcodeFile& file) {
   std::vector<size_t> passes = PassesOf(file);
-  if (passes.empty() || file.ends.empty()) return;
-  Point low = file.ends.front();
-  Point high = low;
-  for (const Block& block : file.blocks) {
-    const Outline outline = OutlineOf(file, block);
-    for (const Point& point : outline.shape()) {
-      low = {std::min(low.x, point.x), std::min(low.y, point.y)};
-      high = {std::max(high.x, point.x), std::max(high.y, point.y)};
-    }
-  }
+  if (passes.empty()) return;
+  BoundingBox bounds;
+  for (const Block& block : file.blocks) bounds.Add(BoundingBox(OutlineOf(file, block).shape()));
   room_of_.assign(file.layers.size(), nullptr);
-  Follower follower(file, low, high);
+  Follower follower(file, bounds);
   int64_t steps = kMostSteps;
   size_t tiles = 0;
   passes.push_back(file.layers.size());

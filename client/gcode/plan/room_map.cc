@@ -93,13 +93,15 @@ void RoomBuilder::Window::Add(int column, int row) {
   row_end = std::max(row_end, row + 1);
 }
 
-RoomBuilder::RoomBuilder(Point low, Point high, const HeadPart& part) : part_(part) {
-  const double width = std::max(high.x - low.x, 0.0) + 2 * part.cell_mm;
-  const double depth = std::max(high.y - low.y, 0.0) + 2 * part.cell_mm;
+RoomBuilder::RoomBuilder(const BoundingBox& bounds, const HeadPart& part) : part_(part) {
+  const double width = bounds.width() + 2 * part.cell_mm;
+  const double depth = bounds.height() + 2 * part.cell_mm;
   part_.cell_mm = std::max({part.cell_mm, std::sqrt(width * depth / kMostCells),
                             width / kMostInARow, depth / kMostInARow});
   const double cell = part_.cell_mm;
   box_.cell_mm = cell;
+  const Point low = bounds.low();
+  const Point high = bounds.high();
   box_.low = {std::floor(low.x / cell) * cell, std::floor(low.y / cell) * cell};
   box_.columns = static_cast<int>((high.x - box_.low.x) / cell) + 1;
   box_.rows = static_cast<int>((high.y - box_.low.y) / cell) + 1;
@@ -114,8 +116,7 @@ RoomBuilder::RoomBuilder(Point low, Point high, const HeadPart& part) : part_(pa
           {column, row, cells, may_touch ? std::max(InRoomHeight(least), kLevel) : kNever});
     }
   }
-  std::stable_sort(offsets_.begin(), offsets_.end(),
-                   [](const Offset& a, const Offset& b) { return a.cells < b.cells; });
+  std::ranges::stable_sort(offsets_, {}, &Offset::cells);
   const auto cells = static_cast<size_t>(box_.columns) * static_cast<size_t>(box_.rows);
   top_.assign(cells, 0);
   now_.assign(cells, 0);
@@ -145,9 +146,7 @@ void RoomBuilder::Visit(Point a, double z_a_mm, Point b, double z_b_mm) {
 
 // Of the head, in the pass.
 RoomHeight RoomBuilder::LowestAt(int column, int row) const {
-  const bool inside = visited_.column_begin <= column && column < visited_.column_end &&
-                      visited_.row_begin <= row && row < visited_.row_end;
-  return inside ? lowest_[Index(column, row)] : kNever;
+  return visited_.Has(column, row) ? lowest_[Index(column, row)] : kNever;
 }
 
 // Around the cell the head has to be so high, unless it was as near to it, as low.
@@ -165,10 +164,7 @@ void RoomBuilder::Spread(int column, int row, int64_t& steps) {
     if (lowest <= pass_low_ || top <= offset.least) return;
     const int x = column + offset.column;
     const int y = row + offset.row;
-    if (x < visited_.column_begin || x >= visited_.column_end || y < visited_.row_begin ||
-        y >= visited_.row_end) {
-      continue;
-    }
+    if (!visited_.Has(x, y)) continue;
     RoomHeight& need = need_[Index(x, y)];
     need = std::max(need, std::min<RoomHeight>(top - offset.least, lowest));
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
 
 namespace traverse::gcode {
@@ -66,8 +67,8 @@ class RoomMap {
 // height goes down. Memory: 8 bytes a cell, and at most a million cells in the box.
 class RoomBuilder {
  public:
-  // Of what is printed in the box between `low` and `high`.
-  RoomBuilder(Point low, Point high, const HeadPart& part);
+  // Of what is printed within `bounds`.
+  RoomBuilder(const BoundingBox& bounds, const HeadPart& part);
 
   // A straight piece of a path, or of a move of the file.
   void Print(Point a, Point b, double z_mm);
@@ -87,6 +88,9 @@ class RoomBuilder {
 
     void Add(int column, int row);
     bool empty() const { return column_end == 0; }
+    bool Has(int column, int row) const {
+      return column_begin <= column && column < column_end && row_begin <= row && row < row_end;
+    }
   };
   struct Offset {
     int column = 0;

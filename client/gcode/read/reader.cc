@@ -51,8 +51,7 @@ class StyleScan {
 };
 
 absl::Status Fault(const GcodeFile& file, Offset at, std::string_view what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(file.name, ":", file.LineNumber(at), ": ", std::string(what)));
+  return absl::InvalidArgumentError(absl::StrCat(file.Place(at), ": ", std::string(what)));
 }
 
 // Lines are read in less than a microsecond.
@@ -210,8 +209,8 @@ size_t GcodeFile::LayerOf(size_t block) const {
   return static_cast<size_t>(behind - layers.begin()) - 1;
 }
 
-size_t GcodeFile::LineNumber(gcode::Offset offset) const {
-  return 1 + static_cast<size_t>(std::count(text.begin(), text.begin() + offset, '\n'));
+std::string GcodeFile::Place(gcode::Offset offset) const {
+  return absl::StrCat(name, ":", 1 + std::count(text.begin(), text.begin() + offset, '\n'));
 }
 
 absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name,

@@ -163,7 +163,7 @@ TEST(ReadGcode, AnArcWithoutCenterKeepsItsLayerAndNoOther) {
   ASSERT_EQ(file->layers.size(), 3u);
   EXPECT_EQ(file->layers[0].fault, nullptr);
   EXPECT_STREQ(file->layers[1].fault, "G2 without I, J or R");
-  EXPECT_EQ(file->LineNumber(file->layers[1].fault_at), 12u);
+  EXPECT_EQ(file->Place(file->layers[1].fault_at), file->name + ":12");
   EXPECT_EQ(file->layers[2].fault, nullptr);
   for (uint32_t b = file->layers[1].first_block; b < file->layers[1].end_block; ++b) {
     EXPECT_TRUE(file->blocks[b].flags & kBlockPinned);
