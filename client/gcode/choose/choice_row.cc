@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
+
+#include "client/gcode/choose/cheapest_row.h"
 
 namespace traverse::gcode {
 namespace {
@@ -15,8 +16,6 @@ constexpr double kSlackMm = PrintTotals::kLeastExtraMm;
 
 // And of times.
 constexpr double kTimeSlack = 1e-9;
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A second of print time is worth this much travel: between orders that take the same time the
 // shorter one is better.
@@ -129,56 +128,39 @@ class RowFinder {
            prices.retraction * static_cast<double>(totals.retractions);
   }
 
-  bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
+  static bool MayFollow(const ChoiceColumn& column, size_t before, size_t choice) {
+    const bool ruled_out =
+        column.no_choice[choice] ||
+        (!column.no_travel.empty() && column.no_travel[before * column.inside.size() + choice]);
+    if (ruled_out) return false;
+    const PrintTotals given = column.Whole(0, 0);
+    const PrintTotals chosen = column.Whole(before, choice);
     if (chosen.blocked > given.blocked || chosen.open_crossings > given.open_crossings ||
         chosen.longest_open_mm > given.longest_open_mm + kSlackMm) {
       return false;
     }
-    // If primes push a little more or less than was retracted, their number is part of the print.
-    return std::abs(chosen.extra_mm - given.extra_mm) <= kSlackMm;
+    // If primes push a little more or less than was retracted, their number is part of the print;
+    // and that of the paths belongs to them, whatever is before them.
+    return std::abs(chosen.extra_mm - given.extra_mm) <= kSlackMm &&
+           std::abs(column.inside[choice].extra_mm - column.inside[0].extra_mm) <= kSlackMm;
   }
 
   Row Find(const Prices& prices) const {
-    std::vector<std::vector<uint32_t>> from(columns_.size());
-    std::vector<double> before = {0};
-    for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      before = Extend(layer, prices, before, from[layer]);
+    CheapestRow cheapest;
+    for (const ChoiceColumn* column : columns_) {
+      cheapest.Extend(
+          column->inside.size(),
+          [&](uint32_t before, uint32_t choice, double up_to) {
+            return up_to + Score(column->Whole(before, choice), prices);
+          },
+          [&](uint32_t before, uint32_t choice) { return MayFollow(*column, before, choice); });
     }
-    Row row;
-    row.prices = prices;
-    row.choices.resize(columns_.size());
-    auto choice =
-        static_cast<uint32_t>(std::min_element(before.begin(), before.end()) - before.begin());
+    Row row{cheapest.Choices(), {}, prices};
     for (size_t layer = columns_.size(); layer-- > 0;) {
-      row.choices[layer] = choice;
-      choice = from[layer][choice];
-      row.totals += columns_[layer]->Whole(choice, row.choices[layer]);
+      row.totals +=
+          columns_[layer]->Whole(layer > 0 ? row.choices[layer - 1] : 0, row.choices[layer]);
     }
     return row;
-  }
-
-  // [choice] the score of the best row up to `layer`; `from` has the choice before it.
-  std::vector<double> Extend(size_t layer, const Prices& prices, const std::vector<double>& before,
-                             std::vector<uint32_t>& from) const {
-    const ChoiceColumn& column = *columns_[layer];
-    const size_t n = column.inside.size();
-    const PrintTotals given = column.Whole(0, 0);
-    std::vector<double> scores(n, kNever);
-    from.assign(n, 0);
-    for (size_t c = 0; c < n; ++c) {
-      if (column.no_choice[c]) continue;
-      // The extruder's surplus belongs to the paths, whatever is before them.
-      if (std::abs(column.inside[c].extra_mm - column.inside[0].extra_mm) > kSlackMm) continue;
-      for (size_t b = 0; b < before.size(); ++b) {
-        if (!column.no_travel.empty() && column.no_travel[b * n + c]) continue;
-        const PrintTotals whole = column.Whole(b, c);
-        const double score = before[b] + Score(whole, prices);
-        if (score >= scores[c] || !MayBe(given, whole)) continue;
-        scores[c] = score;
-        from[c] = static_cast<uint32_t>(b);
-      }
-    }
-    return scores;
   }
 
   const std::vector<const ChoiceColumn*>& columns_;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <utility>
 
+#include "client/gcode/choose/cheapest_row.h"
 #include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/hidden/hidden_moves.h"
@@ -84,29 +84,26 @@ class FastSearch {
 // What the travel between layers takes in the row of the least time, whatever the islands rest:
 // that policy does not ask for it.
 double LeastBetweenLayers(const std::vector<LayerColumn>& columns) {
-  struct Row {
-    double all = 0;
-    double between = 0;
-  };
-  std::vector<Row> rows(columns[0].choices.size());
-  for (size_t i = 0; i < rows.size(); ++i) rows[i].all = columns[0].totals.inside[i].seconds;
-  for (size_t layer = 1; layer < columns.size(); ++layer) {
-    const LayerColumn& column = columns[layer];
-    const size_t n = column.choices.size();
-    std::vector<Row> next(n, Row{std::numeric_limits<double>::infinity(), 0});
-    for (size_t before = 0; before < rows.size(); ++before) {
-      for (size_t i = 0; i < n; ++i) {
-        if (!column.measured[before * n + i]) continue;
-        const double travel = column.totals.Travel(before, i).seconds;
-        const double all = rows[before].all + travel + column.totals.inside[i].seconds;
-        if (all < next[i].all) next[i] = {all, rows[before].between + travel};
-      }
-    }
-    rows = std::move(next);
+  CheapestRow cheapest;
+  for (const LayerColumn& column : columns) {
+    const ChoiceColumn& totals = column.totals;
+    const bool first = &column == &columns.front();
+    cheapest.Extend(
+        column.choices.size(),
+        [&](uint32_t before, uint32_t choice, double up_to) {
+          const double travel = first ? 0 : totals.Travel(before, choice).seconds;
+          return up_to + travel + totals.inside[choice].seconds;
+        },
+        [&](uint32_t before, uint32_t choice) {
+          return first || column.measured[before * column.choices.size() + choice];
+        });
   }
-  return std::min_element(rows.begin(), rows.end(),
-                          [](const Row& a, const Row& b) { return a.all < b.all; })
-      ->between;
+  const std::vector<uint32_t> row = cheapest.Choices();
+  double between = 0;
+  for (size_t layer = 1; layer < columns.size(); ++layer) {
+    between += columns[layer].totals.Travel(row[layer - 1], row[layer]).seconds;
+  }
+  return between;
 }
 
 // What is saved where little is hidden: as chosen in the first and the last layer, and between

@@ -351,9 +351,7 @@ class LayerChooser::Impl {
                              .Turn(FastestOrders(column), travel_[layer], islands,
                                    rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
-    if (layer == 0) return turned;
-    turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;
-    turned.given_travel_seconds = column.given_travel_seconds;
+    if (layer > 0) turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;
     return turned;
   }
 

@@ -31,7 +31,6 @@ struct TurnedLayer {
   Point given_begin;
   Point given_end;
   double given_travel_mm = 0;
-  double given_travel_seconds = 0;
 };
 
 // [layer] the turn to take, unset for the file's own order: the row that takes the least time if a

@@ -21,7 +21,7 @@ class RestedStack {
     for (size_t layer = 0; layer < layers; ++layer) layers_.push_back(LayerAt(layer));
     std::vector<TimedLayer> given;
     for (const TurnedLayer& layer : layers_) {
-      given.push_back({&layer.given_times, layer.given_travel_seconds});
+      given.push_back({&layer.given_times, layer.given_travel_mm / 100});
     }
     rests_.SetGiven(given);
   }
@@ -104,7 +104,6 @@ class RestedStack {
     turned.given_begin = point(given.front());
     turned.given_end = point(given.back());
     turned.given_travel_mm = layer > 0 ? 50 : 0;
-    turned.given_travel_seconds = turned.given_travel_mm / 100;
     for (size_t turn = 0; turn < turned.turns.size(); ++turn) {
       const LayerOrder order = turned.turns.OrderOf(turn);
       turned.begin.push_back(point(order.front()));
