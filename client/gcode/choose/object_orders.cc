@@ -6,6 +6,8 @@
 #include <queue>
 #include <utility>
 
+#include "absl/container/flat_hash_set.h"
+#include "absl/types/span.h"
 #include "client/gcode/choose/round_trip.h"
 #include "client/gcode/link/label_lines.h"
 #include "client/gcode/link/link.h"
@@ -13,24 +15,18 @@
 namespace traverse::gcode {
 namespace {
 
-// An object of a layer as the file has it.
-struct Stretch {
-  uint32_t begin = 0;
-  uint32_t end = 0;
-  uint32_t object = 0;
-};
-
-std::vector<Stretch> StretchesOf(const GcodeFile& file, const Layer& layer) {
-  std::vector<Stretch> stretches;
+// The objects of a layer as the file has them, and what is of none between them.
+std::vector<LayerObject> ObjectsIn(const GcodeFile& file, const Layer& layer) {
+  std::vector<LayerObject> objects;
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     const uint32_t path = b - layer.first_block;
     const uint32_t object = file.blocks[b].object;
-    if (stretches.empty() || stretches.back().object != object) {
-      stretches.push_back({path, path, object});
+    if (objects.empty() || objects.back().object != object) {
+      objects.push_back({path, path, object});
     }
-    stretches.back().end = path + 1;
+    objects.back().end = path + 1;
   }
-  return stretches;
+  return objects;
 }
 
 // In prints object by object the head goes down again to begin an object, when one that is higher
@@ -116,38 +112,38 @@ std::vector<std::vector<uint32_t>> TripsThrough(std::vector<Point> places, uint3
 class RunFinder {
  public:
   RunFinder(const GcodeFile& file, const Layer& layer, const LayerFreedom& freedom)
-      : file_(file), layer_(layer), freedom_(freedom), stretches_(StretchesOf(file, layer)) {}
+      : file_(file), layer_(layer), freedom_(freedom) {}
 
   LayerObjects Find() {
-    for (const Stretch& stretch : stretches_) {
-      if (!MayStandElsewhere(stretch)) {
+    for (const LayerObject& object : ObjectsIn(file_, layer_)) {
+      if (!MayStandElsewhere(object)) {
         EndRun();
         continue;
       }
-      const uint32_t begin = layer_.first_block + stretch.begin;
+      const uint32_t begin = layer_.first_block + object.begin;
       if ((file_.blocks[begin].link & kLinkHeats) != 0 || SetsFirst(begin)) EndRun();
-      if (!run_.empty() && !LabelledAlike(run_.front(), stretch)) {
+      if (!run_.empty() && !LabelledAlike(run_.front(), object)) {
         Bar("their labels are not written alike");
         EndRun();
       }
-      run_.push_back(stretch);
+      run_.push_back(object);
     }
     EndRun();
     return std::move(found_);
   }
 
  private:
-  bool MayStandElsewhere(const Stretch& stretch) {
-    if (stretch.object == 0) return false;
+  bool MayStandElsewhere(const LayerObject& object) {
+    if (object.object == 0) return false;
     const uint32_t first = layer_.first_block;
-    if ((stretch.begin == 0 && GoesOn(first)) ||
-        (first + stretch.end == layer_.end_block && GoesOn(layer_.end_block))) {
+    if ((object.begin == 0 && GoesOn(first)) ||
+        (first + object.end == layer_.end_block && GoesOn(layer_.end_block))) {
       Bar("one of them goes on in another layer");
       return false;
     }
-    for (uint32_t path = stretch.begin; path < stretch.end; ++path) {
+    for (uint32_t path = object.begin; path < object.end; ++path) {
       const uint32_t block = layer_.first_block + path;
-      const bool amid = path > stretch.begin;
+      const bool amid = path > object.begin;
       const bool heats = amid && (file_.blocks[block].link & kLinkHeats) != 0;
       const bool sets = amid && SetsFirst(block);
       if (!freedom_.rules[path].pinned && !heats && !sets) continue;
@@ -184,7 +180,7 @@ class RunFinder {
     return false;
   }
 
-  bool LabelledAlike(const Stretch& a, const Stretch& b) const {
+  bool LabelledAlike(const LayerObject& a, const LayerObject& b) const {
     const uint32_t first = layer_.first_block;
     return BeginsAlike(file_, first + a.begin, first + b.begin) &&
            EndsAlike(file_, first + a.end, first + b.end);
@@ -203,20 +199,13 @@ class RunFinder {
   }
 
   void EndRun() {
-    const std::vector<Stretch> run = std::exchange(run_, {});
+    std::vector<LayerObject> run = std::exchange(run_, {});
     if (run.size() < 2) return;
-    std::vector<uint32_t> numbers;
-    std::vector<LayerObject> objects;
-    for (const Stretch& stretch : run) {
-      numbers.push_back(stretch.object);
-      objects.push_back({stretch.begin, stretch.end, {}});
-    }
-    std::sort(numbers.begin(), numbers.end());
-    if (std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end()) {
-      return Bar("one of them is printed twice in a layer");
-    }
-    NoteContacts(objects);
-    found_.runs.push_back(std::move(objects));
+    absl::flat_hash_set<uint32_t> different;
+    for (const LayerObject& object : run) different.insert(object.object);
+    if (different.size() < run.size()) return Bar("one of them is printed twice in a layer");
+    NoteContacts(run);
+    found_.runs.push_back(std::move(run));
   }
 
   void Bar(std::string_view barrier) {
@@ -226,10 +215,38 @@ class RunFinder {
   const GcodeFile& file_;
   const Layer& layer_;
   const LayerFreedom& freedom_;
-  const std::vector<Stretch> stretches_;
-  std::vector<Stretch> run_;
+  std::vector<LayerObject> run_;
   LayerObjects found_;
 };
+
+// The numbers of the objects of `run` along the round trip with `ranks`; of those that touch, the
+// later one stays the later one.
+std::vector<uint32_t> Sorted(const std::vector<LayerObject>& run,
+                             const absl::flat_hash_map<uint32_t, uint32_t>& ranks, bool backwards) {
+  using Ranked = std::pair<uint32_t, uint32_t>;  // rank, number
+  std::priority_queue<Ranked, std::vector<Ranked>, std::greater<>> free;
+  const auto release = [&](uint32_t i) {
+    const uint32_t rank = ranks.at(run[i].object);
+    free.emplace(backwards ? UINT32_MAX - rank : rank, i);
+  };
+  std::vector<size_t> waits(run.size());  // for so many others
+  std::vector<std::vector<uint32_t>> ahead_of(run.size());
+  for (uint32_t i = 0; i < run.size(); ++i) {
+    waits[i] = run[i].behind.size();
+    if (waits[i] == 0) release(i);
+    for (const uint32_t before : run[i].behind) ahead_of[before].push_back(i);
+  }
+  std::vector<uint32_t> sorted;
+  while (!free.empty()) {
+    const uint32_t next = free.top().second;
+    free.pop();
+    sorted.push_back(next);
+    for (const uint32_t behind : ahead_of[next]) {
+      if (--waits[behind] == 0) release(behind);
+    }
+  }
+  return sorted;
+}
 
 }  // namespace
 
@@ -254,50 +271,19 @@ LayerObjects ObjectOrders::ObjectsOf(const Layer& layer, const LayerFreedom& fre
   return any() ? RunFinder(file_, layer, freedom).Find() : LayerObjects{};
 }
 
-// The numbers of the objects of `run` along the round trip; of those that touch, the later one
-// stays the later one.
-std::vector<uint32_t> ObjectOrders::Sorted(const Layer& layer, const std::vector<LayerObject>& run,
-                                           const Ranks& ranks, bool backwards) const {
-  using Ranked = std::pair<uint32_t, uint32_t>;  // rank, number
-  std::priority_queue<Ranked, std::vector<Ranked>, std::greater<>> free;
-  const auto release = [&](uint32_t i) {
-    const uint32_t rank = ranks.at(file_.blocks[layer.first_block + run[i].begin].object);
-    free.emplace(backwards ? UINT32_MAX - rank : rank, i);
-  };
-  std::vector<size_t> waits(run.size());  // for so many others
-  std::vector<std::vector<uint32_t>> ahead_of(run.size());
-  for (uint32_t i = 0; i < run.size(); ++i) {
-    waits[i] = run[i].behind.size();
-    if (waits[i] == 0) release(i);
-    for (const uint32_t before : run[i].behind) ahead_of[before].push_back(i);
-  }
-  std::vector<uint32_t> sorted;
-  while (!free.empty()) {
-    const uint32_t next = free.top().second;
-    free.pop();
-    sorted.push_back(next);
-    for (const uint32_t behind : ahead_of[next]) {
-      if (--waits[behind] == 0) release(behind);
-    }
-  }
-  return sorted;
-}
-
 std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjects& objects,
                                             const LayerOrder& order, bool backwards) const {
   // Whole objects only: what search and file agree about.
-  for (size_t i = 0; i < order.size(); ++i) {
-    const uint32_t here = file_.blocks[layer.first_block + i].object;
-    if (i >= layer.end_block - layer.first_block || file_.blocks[order[i].block].object != here) {
-      return {};
-    }
-  }
+  const auto blocks = absl::MakeConstSpan(file_.blocks)
+                          .subspan(layer.first_block, layer.end_block - layer.first_block);
+  const auto object_of = [this](const Placement& path) { return file_.blocks[path.block].object; };
+  if (!std::ranges::equal(order, blocks, {}, object_of, &Block::object)) return {};
   std::vector<LayerOrder> moved;
   const auto add = [&](const Ranks& ranks, bool turned) {
     LayerOrder other = order;
     for (const std::vector<LayerObject>& run : objects.runs) {
       auto to = other.begin() + run.front().begin;
-      for (const uint32_t object : Sorted(layer, run, ranks, turned)) {
+      for (const uint32_t object : Sorted(run, ranks, turned)) {
         const auto from = order.begin();
         to = std::copy(from + run[object].begin, from + run[object].end, to);
       }
@@ -306,7 +292,7 @@ std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjec
     if (other != order && !known) moved.push_back(std::move(other));
   };
   for (const Ranks& ranks : trips_) add(ranks, false);
-  if (backwards && any()) add(trips_.front(), true);
+  if (backwards) add(trips_.front(), true);
   return moved;
 }
 

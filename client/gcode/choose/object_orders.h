@@ -25,7 +25,9 @@ namespace traverse::gcode {
 struct LayerObject {
   uint32_t begin = 0;
   uint32_t end = 0;
-  std::vector<uint32_t> behind;  // of each region of the run that it is of, the object before it
+  uint32_t object = 0;  // Block::object
+  std::vector<uint32_t> behind =
+      {};  // of each region of the run that it is of, the object before it
 };
 
 // The objects of a layer that may change places.
@@ -53,7 +55,7 @@ class ObjectOrders {
 
   // `order` with the objects of each run on each round trip, and with `backwards` on the shortest
   // one backwards too; without those that are `order` itself. Nothing if `order` has the objects in
-  // another order than the file.
+  // another order than the file. REQUIRES: any().
   std::vector<LayerOrder> Moved(const Layer& layer, const LayerObjects& objects,
                                 const LayerOrder& order, bool backwards) const;
 
@@ -64,9 +66,6 @@ class ObjectOrders {
 
  private:
   using Ranks = absl::flat_hash_map<uint32_t, uint32_t>;  // [Block::object] its place on a trip
-
-  std::vector<uint32_t> Sorted(const Layer& layer, const std::vector<LayerObject>& run,
-                               const Ranks& ranks, bool backwards) const;
 
   const GcodeFile& file_;
   std::vector<Ranks> trips_;
