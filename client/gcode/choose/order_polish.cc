@@ -123,11 +123,27 @@ class OrderPolisher::Search {
   // Other entries of the path at `i`.
   bool TryEntries(size_t i) {
     if (i == 0 || i + 1 >= state_.size()) return false;
-    for (const uint32_t entry : EntriesBetween(i, i - 1, i + 1)) {
-      if (entry == state_.At(i).entry) continue;
-      if (state_.DoIfBetter(i, i + 1, {PlaceRun{i, i + 1, false, entry}, PlaceRun{}})) return true;
+    for (const PlaceRun& other : Variants({i, i + 1}, i - 1, i + 1)) {
+      if (state_.DoIfBetter(i, i + 1, {other, PlaceRun{}})) return true;
     }
     return false;
+  }
+
+  // A short run, which comes to stand between the paths at `before` and `behind`, turned or, if it
+  // is one path, with other entries.
+  std::vector<PlaceRun> Variants(PlaceRun run, size_t before, size_t behind) const {
+    std::vector<PlaceRun> variants;
+    if (run.size() == 1) {
+      for (const uint32_t entry : EntriesBetween(run.begin, before, behind)) {
+        if (entry == state_.At(run.begin).entry) continue;
+        run.entry = entry;
+        variants.push_back(run);
+      }
+    } else if (run.size() <= kShortRun && state_.MayTurn(run.begin, run.end)) {
+      run.turned = true;
+      variants.push_back(run);
+    }
+    return variants;
   }
 
   // Those of the path at `i` that may suit it between the paths at `before` and `behind`.
@@ -152,28 +168,13 @@ class OrderPolisher::Search {
     const PlaceRun left{begin, middle};
     const PlaceRun right{middle, end};
     if (state_.DoIfBetter(begin, end, {right, left})) return true;
-    if (right.size() == 1) {
-      for (const uint32_t entry : EntriesBetween(middle, begin - 1, begin)) {
-        const PlaceRun moved{middle, end, false, entry};
-        if (entry != state_.At(middle).entry && state_.DoIfBetter(begin, end, {moved, left})) {
-          return true;
-        }
-      }
-    } else if (right.size() <= kShortRun && state_.MayTurn(middle, end) &&
-               state_.DoIfBetter(begin, end, {PlaceRun{middle, end, true}, left})) {
-      return true;
+    for (const PlaceRun& other : Variants(right, begin - 1, begin)) {
+      if (state_.DoIfBetter(begin, end, {other, left})) return true;
     }
-    if (left.size() == 1) {
-      for (const uint32_t entry : EntriesBetween(begin, end - 1, end)) {
-        const PlaceRun moved{begin, middle, false, entry};
-        if (entry != state_.At(begin).entry && state_.DoIfBetter(begin, end, {right, moved})) {
-          return true;
-        }
-      }
-      return false;
+    for (const PlaceRun& other : Variants(left, end - 1, end)) {
+      if (state_.DoIfBetter(begin, end, {right, other})) return true;
     }
-    return left.size() <= kShortRun && state_.MayTurn(begin, middle) &&
-           state_.DoIfBetter(begin, end, {right, PlaceRun{begin, middle, true}});
+    return false;
   }
 
   // A run that begins with a near path comes behind the one at `i`.
