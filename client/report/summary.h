@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "client/gcode/choose/forecast.h"
+#include "client/gcode/choose/chosen_layers.h"
 #include "client/input/input_job.h"
 #include "client/report/run.h"
 

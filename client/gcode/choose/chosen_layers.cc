@@ -22,7 +22,6 @@ class ChosenWriter {
     ChosenLayers chosen;
     chosen.texts.resize(columns_.size());
     for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
-    chosen.forecast = ForecastOf(columns_);
     std::vector<size_t> left;
     std::vector<PartStart> starts;  // [layer] of its paths
     std::vector<Decimal> ends;      // [layer] the register behind them, as foreseen
@@ -95,6 +94,14 @@ class ChosenWriter {
     chosen.totals.push_back(column.totals.Whole(before, column.chosen));
     chosen.changed += column.chosen != 0 ? 1 : 0;
     if (column.blocked) chosen.blocked.push_back(layer);
+    const double given = ForecastPaths(*column.writer, column.given_order(), Hiding::kNone);
+    Forecast& forecast = chosen.forecast;
+    forecast.given_seconds += given;
+    forecast.seconds +=
+        column.chosen == 0 ? given : ForecastPaths(*Chosen(layer).writer, Chosen(layer).order);
+    if (layer == 0) return;
+    forecast.given_seconds += column.totals.Travel(0, 0).seconds;
+    forecast.seconds += column.totals.Travel(before, column.chosen).seconds;
   }
 
   const GcodeFile& file_;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "client/gcode/choose/forecast.h"
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/part_start.h"
@@ -21,6 +20,16 @@ struct LayerColumn;
 
 // One order for each layer of a file; empty for the file's own order.
 using FileOrder = std::vector<LayerOrder>;
+
+// What orders are searched for and chosen by, summed up for the file's own orders and for those
+// chosen: within a layer the estimates of its travel moves, one by one, each with its retraction;
+// the travel moves between layers as they were measured to choose among orders, with what scripts
+// do there. No layer is measured for it, so beside the time of what is written it shows how true
+// the estimates are.
+struct Forecast {
+  double given_seconds = 0;
+  double seconds = 0;
+};
 
 // The shortest rest of an island that rests in the file, before and after.
 struct RestTotals {

@@ -249,19 +249,4 @@ bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& colum
   return any;
 }
 
-Forecast ForecastOf(const std::vector<LayerColumn>& columns) {
-  Forecast forecast;
-  for (size_t layer = 0; layer < columns.size(); ++layer) {
-    const LayerColumn& column = columns[layer];
-    const double given = ForecastPaths(*column.writer, column.given_order(), Hiding::kNone);
-    const LayerChoice& chosen = column.choices[column.chosen];
-    forecast.given_seconds += given;
-    forecast.seconds += column.chosen == 0 ? given : ForecastPaths(*chosen.writer, chosen.order);
-    if (layer == 0) continue;
-    forecast.given_seconds += column.totals.Travel(0, 0).seconds;
-    forecast.seconds += column.totals.Travel(columns[layer - 1].chosen, column.chosen).seconds;
-  }
-  return forecast;
-}
-
 }  // namespace traverse::gcode

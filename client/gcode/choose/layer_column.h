@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "client/gcode/choose/choice_row.h"
-#include "client/gcode/choose/forecast.h"
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/refusals.h"
@@ -137,9 +136,6 @@ bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& colum
 // what is hidden as sliced.
 double ForecastPaths(const LayerWriter& writer, const LayerOrder& order,
                      Hiding hiding = Hiding::kBent);
-
-// Of all layers, with the measured travel moves to them.
-Forecast ForecastOf(const std::vector<LayerColumn>& columns);
 
 }  // namespace traverse::gcode
 
