@@ -59,7 +59,9 @@ void IslandMap::AddLine(double from_x, double from_y, double to_x, double to_y, 
   looked_at_ += steps;
   full_ = full_ || looked_at_ > kMostPointsOfLayer;
   for (double step = 0; step <= steps && !full_; ++step) {
-    Add({from_x + dx * step / steps, from_y + dy * step / steps, island});
+    const double x = from_x + dx * step / steps;
+    const double y = from_y + dy * step / steps;
+    Add({x, y, island, CellOf(x, y, IslandTree::kMostMm)});
   }
 }
 
@@ -90,22 +92,17 @@ std::vector<IslandCell> IslandMap::TakeCells() {
 }
 
 IslandTree IslandMap::TakeTree() {
-  std::vector<PlacedPoint> placed;
-  placed.reserve(points_.size());
-  for (const PrintedPoint& point : std::exchange(points_, {})) {
-    placed.emplace_back(CellOf(point.x, point.y, IslandTree::kMostMm), point);
-  }
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  return {count_, GapsOf(placed)};
+  std::vector<PrintedPoint> points = std::exchange(points_, {});
+  std::ranges::stable_sort(points, {}, &PrintedPoint::cell);
+  return {count_, GapsOf(points)};
 }
 
-// `points` by cell, none of which is narrower than the greatest gap.
-std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PlacedPoint>& points) {
-  absl::flat_hash_map<uint64_t, absl::Span<const PlacedPoint>> cells;
+// `points` by cell.
+std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PrintedPoint>& points) {
+  absl::flat_hash_map<uint64_t, absl::Span<const PrintedPoint>> cells;
   for (size_t begin = 0, end = 0; begin < points.size(); begin = end) {
-    while (end < points.size() && points[end].first == points[begin].first) ++end;
-    cells[points[begin].first] = absl::MakeConstSpan(points).subspan(begin, end - begin);
+    while (end < points.size() && points[end].cell == points[begin].cell) ++end;
+    cells[points[begin].cell] = absl::MakeConstSpan(points).subspan(begin, end - begin);
   }
   uint64_t left = kMostPairs;
   absl::flat_hash_map<std::pair<uint32_t, uint32_t>, double> squares;
@@ -115,9 +112,9 @@ std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PlacedPoint>& points)
     const auto [at, is_new] = squares.try_emplace(std::minmax(a.island, b.island), square);
     if (!is_new) at->second = std::min(at->second, square);
   };
-  const auto of_one = [](absl::Span<const PlacedPoint> some, uint32_t island) {
+  const auto of_one = [](absl::Span<const PrintedPoint> some, uint32_t island) {
     return std::all_of(some.begin(), some.end(),
-                       [island](const auto& point) { return point.second.island == island; });
+                       [island](const PrintedPoint& point) { return point.island == island; });
   };
   for (const auto& [cell, here] : cells) {
     // Each cell with itself, and with half of those around it.
@@ -125,13 +122,13 @@ std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PlacedPoint>& points)
                                  Beside(cell, 1, 0), Beside(cell, 1, 1)}) {
       const auto there = cells.find(other);
       if (there == cells.end()) continue;
-      const uint32_t island = here[0].second.island;
+      const uint32_t island = here[0].island;
       if (of_one(here, island) && of_one(there->second, island)) continue;
       const uint64_t pairs = here.size() * there->second.size();
       if (pairs > left) return {};
       left -= pairs;
-      for (const auto& a : here) {
-        for (const auto& b : there->second) look_at(a.second, b.second);
+      for (const PrintedPoint& a : here) {
+        for (const PrintedPoint& b : there->second) look_at(a, b);
       }
     }
   }

@@ -51,12 +51,12 @@ class IslandMap {
     double x = 0;
     double y = 0;
     uint32_t island = 0;
+    uint64_t cell = 0;  // none of which is narrower than the greatest gap
   };
-  using PlacedPoint = std::pair<uint64_t, PrintedPoint>;
 
   void Add(const PrintedPoint& point);
   void Tidy();
-  static std::vector<IslandGap> GapsOf(const std::vector<PlacedPoint>& points);
+  static std::vector<IslandGap> GapsOf(const std::vector<PrintedPoint>& points);
 
   static constexpr size_t kLeastRoom = 1 << 16;
 

@@ -41,6 +41,14 @@ double RestOf(const LayerIslands::Support& support, size_t layer,
 IslandRests::IslandRests(std::vector<LayerIslands> stack, double least_seconds)
     : stack_(std::move(stack)), least_seconds_(least_seconds) {}
 
+std::vector<std::vector<uint32_t>> IslandRests::IslandsOf(size_t layer) const {
+  const LayerIslands& islands = stack_[layer];
+  std::vector<uint32_t> regions;
+  for (const uint32_t island : islands.island) regions.push_back(islands.tree.RootOf(island));
+  if (regions == islands.island) return {regions};
+  return {regions, islands.island};
+}
+
 IslandTimes IslandRests::TimesOf(size_t layer, const LayerOrder& order, uint32_t first_block,
                                  const std::vector<double>& moments) const {
   assert(moments.size() == 2 * order.size());

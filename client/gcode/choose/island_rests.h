@@ -48,9 +48,8 @@ class IslandRests {
 
   double least_seconds() const { return least_seconds_; }
 
-  // [path] of layer `layer`.
-  const std::vector<uint32_t>& IslandsOf(size_t layer) const { return stack_[layer].island; }
-  std::vector<uint32_t> RegionsOf(size_t layer) const { return stack_[layer].Regions(); }
+  // [path] of layer `layer` its island; and first, if some do, what counts as one with that.
+  std::vector<std::vector<uint32_t>> IslandsOf(size_t layer) const;
 
   // Of layer `layer` in `order`; `moments[2 * i]` and `moments[2 * i + 1]` are when its path i
   // begins and ends.

@@ -345,10 +345,8 @@ class LayerChooser::Impl {
   TurnedLayer TurnsOf(size_t layer) {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer, /*with_freedom=*/true);
-    std::vector<std::vector<uint32_t>> islands = {rests_.RegionsOf(layer)};
-    if (islands[0] != rests_.IslandsOf(layer)) islands.push_back(rests_.IslandsOf(layer));
     TurnedLayer turned = LayerMerge(column.travels(), rules)
-                             .Turn(FastestOrders(column), travel_[layer], islands,
+                             .Turn(FastestOrders(column), travel_[layer], rests_.IslandsOf(layer),
                                    rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
     if (layer > 0) turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;

@@ -87,12 +87,6 @@ class TopOfPrint {
 
 }  // namespace
 
-std::vector<uint32_t> LayerIslands::Regions() const {
-  std::vector<uint32_t> regions;
-  for (const uint32_t one : island) regions.push_back(tree.RootOf(one));
-  return regions;
-}
-
 std::vector<LayerIslands> StackIslands(const GcodeFile& file, int threads) {
   std::vector<LayerIslands> stack(file.layers.size());
   TopOfPrint top;

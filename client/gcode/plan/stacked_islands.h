@@ -30,9 +30,6 @@ struct LayerIslands {
   std::vector<uint32_t> island;  // [path]
   IslandTree tree;
   std::vector<Support> supports;  // ascending, each once
-
-  // [path] all that may count as one island with it.
-  std::vector<uint32_t> Regions() const;
 };
 
 // [layer]. Two islands lie on each other if both have paths in a cell of 1 mm. O(n log n) in the
