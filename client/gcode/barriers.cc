@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string_view>
 
@@ -299,7 +300,7 @@ std::string Remainder(const GcodeFile& file, Policy policy, bool searched) {
 
 std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy policy,
                                           const gcode::Allowance& allow,
-                                          const std::vector<bool>& counted, size_t most) {
+                                          const std::vector<bool>& counted) {
   using gcode::Cause;
   const gcode::ObjectOrders objects(file);
   const bool fans_are_free = gcode::IsFree(policy) || allow.fan_order;
@@ -319,20 +320,20 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
     if (!layer.objects.empty()) ++reasons[layer.objects];
   }
   const auto usual =
-      std::max_element(reasons.begin(), reasons.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
+      std::ranges::max_element(reasons, {}, [](const auto& it) { return it.second; });
   all.objects = usual != reasons.end() ? usual->first : objects.barrier();
   std::vector<Cause> causes;
   for (size_t cause = 0; cause < all.of.size(); ++cause) {
     if (all.of[cause].paths > 0) causes.push_back(static_cast<Cause>(cause));
   }
-  std::stable_sort(causes.begin(), causes.end(),
-                   [&all](Cause a, Cause b) { return all.of[a].paths > all.of[b].paths; });
+  std::ranges::stable_sort(causes, std::greater(), [&](Cause one) { return all.of[one].paths; });
   std::vector<std::string> lines;
   for (const Cause cause : causes) {
-    if (lines.size() < most) lines.push_back(gcode::TextOf(file, policy, cause, all));
+    if (lines.size() < kMostBarriers) lines.push_back(gcode::TextOf(file, policy, cause, all));
   }
-  if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy, !counted.empty()));
+  if (lines.size() < kMostBarriers) {
+    lines.push_back(gcode::Remainder(file, policy, !counted.empty()));
+  }
   return lines;
 }
 

@@ -15,15 +15,14 @@ namespace traverse {
 
 inline constexpr size_t kMostBarriers = 3;
 
-// The `most` weightiest ones of the layers for which `counted` is true, though other orders were
-// looked for there; or of all, before that, if it is empty; by the number of paths that each keeps
-// from others, a line for each: "120 paths in 12 layers are cut off by ... (first in
+// The kMostBarriers weightiest ones of the layers for which `counted` is true, though other orders
+// were looked for there; or of all, before that, if it is empty; by the number of paths that each
+// keeps from others, a line for each: "120 paths in 12 layers are cut off by ... (first in
 // part.gcode:118); --allow=fan_order lets them move"; and, if there is room for it, what else no
 // order found is faster for, or must be kept.
 std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy policy,
                                           const gcode::Allowance& allow,
-                                          const std::vector<bool>& counted = {},
-                                          size_t most = kMostBarriers);
+                                          const std::vector<bool>& counted = {});
 
 // A line for each kind of moves that no path is made of and that therefore hold what they print:
 // lines that cannot be read; relative moves (G91), and moves whose E word pushes nothing, where
