@@ -39,7 +39,6 @@ PLACES = [
     gcode("machine/machine_limits.cc", "MachineLimits*"),
     gcode("machine/motion_planner.cc", "MotionPlanner*:StopToStop*:Measure*"),
     gcode("plan/layer_plan.cc", "Policy*:Precedence*"),
-    gcode("plan/path_rules.cc", "Policy*:Precedence*"),
     gcode("plan/policy.cc", "Policy*:Precedence*"),
     gcode("plan/travel_rules.cc", "TravelRules*"),
     gcode("text/decimal.cc", "Decimal*:NumberStyle*"),
