@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/gcode/choose/layer_choice.h"
+#include "client/gcode/choose/chosen_layers.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/plan/policy.h"

@@ -1,22 +1,37 @@
-// The layers of a file as they were chosen, and their text.
+// What may be chosen of the layers of a file, and what was; and their text.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_CHOSEN_LAYERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_CHOSEN_LAYERS_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/order_polish.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/part_start.h"
 #include "client/gcode/model/placed_path.h"
+#include "client/gcode/plan/policy.h"
 
 namespace traverse::gcode {
 
 struct LayerColumn;
+class HiddenMoves;
+
+struct ChoiceOptions : Liberties {
+  int threads = 1;
+
+  // If set, small changes improve the orders found, within this limit, which takes about as long as
+  // a search of the service. What ends it early ends nothing else.
+  std::optional<PolishLimit> polish = {};
+
+  // See HabitOfNewTravels.
+  std::shared_ptr<const HiddenMoves> hidden = nullptr;
+};
 
 // One order for each layer of a file; empty for the file's own order.
 using FileOrder = std::vector<LayerOrder>;

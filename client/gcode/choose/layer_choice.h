@@ -11,27 +11,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <optional>
+#include <functional>
+#include <vector>
 
 #include "client/gcode/choose/chosen_layers.h"
-#include "client/gcode/choose/order_polish.h"
-#include "client/gcode/plan/policy.h"
+#include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/layer_column.h"
+#include "client/gcode/choose/merged_orders.h"
+#include "client/gcode/choose/object_orders.h"
+#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/link/link_donors.h"
+#include "client/gcode/plan/head_room.h"
+#include "client/gcode/plan/travel_model.h"
+#include "client/gcode/plan/travel_rules.h"
 
 namespace traverse::gcode {
-
-class HiddenMoves;
-
-struct ChoiceOptions : Liberties {
-  int threads = 1;
-
-  // If set, small changes improve the orders found, within this limit, which takes about as long as
-  // a search of the service. What ends it early ends nothing else.
-  std::optional<PolishLimit> polish = {};
-
-  // See HabitOfNewTravels.
-  std::shared_ptr<const HiddenMoves> hidden = nullptr;
-};
 
 // Chooses among the file's order and what is made of the one found (merged_orders.h), by the rules
 // of choice_row.h: the least estimated time with no more travel across visible walls.
@@ -42,7 +36,8 @@ class LayerChooser {
   // Writes and measures the orders to choose from. `file` and `found` outlive the chooser;
   // `found` is empty, or has all layers.
   LayerChooser(const GcodeFile& file, const FileOrder& found, const ChoiceOptions& options);
-  ~LayerChooser();
+  LayerChooser(const LayerChooser&) = delete;
+  LayerChooser& operator=(const LayerChooser&) = delete;
 
   // The best choice that is not ruled out.
   ChosenLayers Choose();
@@ -70,17 +65,55 @@ class LayerChooser {
   bool RuleOutAll(size_t layer);
 
   // From now on the whole file must have `crossings` fewer moves across visible walls.
-  void Tighten(int64_t crossings);
+  void Tighten(int64_t crossings) { fewer_crossings_ += crossings; }
 
   // What Policy::kFast would save within layers (fast_forecast.h), in seconds.
   double SecondsSavedByFast() const;
 
   // True if an order found for `layer` is ruled out and the last choice was the file's order.
-  bool IsGivenUp(size_t layer) const;
+  bool IsGivenUp(size_t layer) const {
+    return columns_[layer].chosen == 0 && columns_[layer].refusals.any;
+  }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::vector<size_t> All() const;
+  void ForEachLayer(const std::vector<size_t>& layers, const std::function<void(size_t)>& work);
+  void ChooseRow();
+  void TakeBestRow();
+  MergeRules RulesOf(size_t layer, bool with_freedom = false) const;
+  bool AnyFound(size_t layer) const;
+  void KickChosen();
+  bool SpareRetractions();
+  void FillTravelsAround(const std::vector<size_t>& layers);
+  void Repair();
+  void AddRepaired(size_t layer);
+  void AddSparing(size_t layer);
+  void FillColumn(size_t layer);
+  void AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column);
+  bool AddPastObstacles(size_t layer);
+  void FillTravels(size_t layer);
+  void AddRested();
+  TurnedLayer TurnsOf(size_t layer);
+  void AddTurned(size_t layer, const IslandTurns& turns, size_t turn);
+  ChosenLayers Write() const;
+
+  const LayerChoice& Chosen(size_t layer) const {
+    return columns_[layer].choices[columns_[layer].chosen];
+  }
+
+  const GcodeFile& file_;
+  const FileOrder& found_;
+  const ChoiceOptions options_;
+  const RetractionHabit habit_;
+  const LinkDonors donors_;
+  const HeadRoom room_;
+  IslandRests rests_;
+  const std::vector<TravelModel> travel_;  // [layer]
+  const ColumnFiller filler_;
+  const ObjectOrders objects_;
+  std::vector<LayerColumn> columns_;  // [layer]
+  int64_t fewer_crossings_ = 0;
+  bool polished_ = false;  // what was chosen first
 };
 
 }  // namespace traverse::gcode
