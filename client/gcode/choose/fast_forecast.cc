@@ -35,51 +35,19 @@ std::vector<size_t> TypicalLayers(const std::vector<LayerColumn>& columns) {
   return typical;
 }
 
-class FastSearch {
- public:
-  FastSearch(const GcodeFile& file, const LinkDonors& donors, const HeadRoom& room,
-             const Allowance& allow, const std::vector<size_t>& layers)
-      : file_(file), donors_(donors), room_(room), allow_(allow) {
-    const auto hidden =
-        std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, layers);
-    habit_ = HabitOfNewTravels(file, allow, 1, hidden);
-  }
-
-  struct Seconds {
-    double given = 0;
-    double fast = 0;
-  };
-
-  Seconds Of(size_t layer, const LayerColumn& column, const TravelModel& travel) const {
-    const Layer& of_file = file_.layers[layer];
-    const bool hides = !column.totals.inside[0].PushesExtra();
-    const LayerWriter writer(file_, of_file, habit_, donors_, room_.Of(layer), hides, &travel);
-    // As soon as fast itself gives up where it leads around walls: the rest changes little.
-    const PolishLimit limit{.seconds_per_travel = PolishLimit::kSecondsPerDetour};
-    const MergeRules rules{.policy = Policy::kFast,
-                           .as_many_retractions = !hides,
-                           .freedom = FreedomOf(file_, of_file, Policy::kFast, allow_),
-                           .polish = limit};
-    // Where whole objects have changed places, the file's own order begins it.
-    const LayerOrder& chosen = column.choices[column.chosen].order;
-    const std::vector<uint32_t> places = writer.PlacesOf(chosen);
-    const bool moved = !std::is_sorted(places.begin(), places.end());
-    const LayerOrder& begun = moved ? column.given_order() : chosen;
-    const double given = ForecastPaths(*column.writer, column.given_order());
-    const double hidden = ForecastPaths(writer, column.given_order());
-    KnownTravels travels(writer);
-    const double searched =
-        ForecastPaths(writer, LayerMerge(travels, rules).Improve(begun, LayerMerge::Effort::kKick));
-    return {given, std::min({given, hidden, searched})};
-  }
-
- private:
-  const GcodeFile& file_;
-  const LinkDonors& donors_;
-  const HeadRoom& room_;
-  const Allowance allow_;
-  RetractionHabit habit_;
-};
+// The seconds of the travel within a layer of `column` in the best order found by `rules`, or in
+// the file's own, as `writer` has them.
+double FastSeconds(const LayerWriter& writer, const LayerColumn& column, const MergeRules& rules) {
+  // Where whole objects have changed places, the file's own order begins it.
+  const LayerOrder& chosen = column.choices[column.chosen].order;
+  const std::vector<uint32_t> places = writer.PlacesOf(chosen);
+  const bool moved = !std::is_sorted(places.begin(), places.end());
+  KnownTravels travels(writer);
+  const LayerOrder searched =
+      LayerMerge(travels, rules)
+          .Improve(moved ? column.given_order() : chosen, LayerMerge::Effort::kKick);
+  return std::min(ForecastPaths(writer, column.given_order()), ForecastPaths(writer, searched));
+}
 
 // What the travel between layers takes in the row of the least time, whatever the islands rest:
 // that policy does not ask for it.
@@ -131,13 +99,24 @@ double SecondsSavedByFast(const GcodeFile& file, const std::vector<LayerColumn>&
   if (columns.size() < 3) return 0;
   allow = AllowedUnder(Policy::kFast, allow);
   const std::vector<size_t> layers = TypicalLayers(columns);
-  const FastSearch search(file, donors, room, allow, layers);
+  const RetractionHabit habit = HabitOfNewTravels(
+      file, allow, 1,
+      std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, layers));
   double given = 0;
   double saved = 0;
-  for (const size_t layer : layers) {
-    const FastSearch::Seconds seconds = search.Of(layer, columns[layer], travel[layer]);
-    given += seconds.given;
-    saved += seconds.given - seconds.fast;
+  for (const size_t i : layers) {
+    const Layer& layer = file.layers[i];
+    const bool hides = !columns[i].totals.inside[0].PushesExtra();
+    const LayerWriter writer(file, layer, habit, donors, room.Of(i), hides, &travel[i]);
+    // As soon as fast itself gives up where it leads around walls: the rest changes little.
+    const MergeRules rules{
+        .policy = Policy::kFast,
+        .as_many_retractions = !hides,
+        .freedom = FreedomOf(file, layer, Policy::kFast, allow),
+        .polish = PolishLimit{.seconds_per_travel = PolishLimit::kSecondsPerDetour}};
+    const double own = ForecastPaths(*columns[i].writer, columns[i].given_order());
+    given += own;
+    saved += own - std::min(own, FastSeconds(writer, columns[i], rules));
   }
   if (given <= 0) return 0;
   double all = 0;
