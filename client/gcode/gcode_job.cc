@@ -33,20 +33,20 @@ struct Census {
   int64_t movable = 0;
 };
 
-void SetCost(const TravelModel& model, v1::CostModel& cost) {
-  v1::TimeCost& time = *cost.mutable_time();
-  // The service has limits; a file may state anything.
-  time.set_speed_mm_s(std::clamp(model.speed_mm_s, 0.001, 1e5));
-  if (model.accel_mm_s2 > 0) time.set_accel_mm_s2(std::clamp(model.accel_mm_s2, 0.001, 1e7));
-  time.set_retraction_seconds(std::clamp(model.retraction_price, 0.0, 1e4));
-  time.set_retraction_threshold_mm(std::clamp(model.retraction_threshold_mm, 0.0, 1e7));
-}
-
 // Longer than any travel.
 constexpr double kNeverMm = 1e7;
 
 // The service knows no longer moves.
 constexpr double kMostKnownSeconds = 1e7;
+
+void SetCost(const TravelModel& model, const RetractionHabit& habit, v1::CostModel& cost) {
+  v1::TimeCost& time = *cost.mutable_time();
+  // The service has limits; a file may state anything.
+  time.set_speed_mm_s(std::clamp(model.speed_mm_s, 0.001, 1e5));
+  if (model.accel_mm_s2 > 0) time.set_accel_mm_s2(std::clamp(model.accel_mm_s2, 0.001, 1e7));
+  time.set_retraction_seconds(std::clamp(model.retraction_price, 0.0, 1e4));
+  time.set_retraction_threshold_mm(std::clamp(habit.threshold_mm, 0.0, kNeverMm));
+}
 
 // The rules by which travel is written (travel_rules.h), so that the search knows the cost of each.
 void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost& time) {
@@ -169,7 +169,7 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   filled.set_id(index + 1);
   filled.set_z_mm(file.HeightMm(layer));
   *filled.mutable_plan() = std::move(planned.plan);
-  SetCost(habits.travel[index], *filled.mutable_cost());
+  SetCost(habits.travel[index], habits.retraction, *filled.mutable_cost());
   // Fewer than the file has cannot be had.
   if (habits.keeps_retractions) filled.mutable_cost()->mutable_time()->set_retraction_seconds(0);
   SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
@@ -268,18 +268,17 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   gcode::FileHabits habits;
   const int threads = gcode::ThreadsFor(file->text.size());
   habits.retraction = gcode::HabitOfNewTravels(*file, allow, threads);
-  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm, threads);
+  habits.travel = gcode::LearnTravel(*file, threads);
   habits.keeps_retractions = gcode::KeepsRetractions(*file);
   if (habits.keeps_retractions) habits.retraction.hidden = nullptr;
-  const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
   // The first path is pinned; the travel to it from the start script is not ours.
   const gcode::Outline first = gcode::OutlineOf(*file, file->blocks.front());
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
-  gcode::SetCost(models.back(), *job.options.mutable_cost());
+  gcode::SetCost(habits.travel.back(), habits.retraction, *job.options.mutable_cost());
   gcode::SetStrategy(*file, *job.options.mutable_strategy());
-  job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
+  job.options.set_idle_speed_mm_s(std::clamp(habits.travel.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);
   job.hidden = habits.retraction.hidden;

@@ -34,7 +34,7 @@ LayerChooser::LayerChooser(const GcodeFile& file, const FileOrder& found,
       room_(file),
       rests_(StackIslands(file, options.threads),
              LeastRestSeconds(file, options.policy, options.min_revisit_seconds)),
-      travel_(LearnTravel(file, habit_.threshold_mm, options.threads)),
+      travel_(LearnTravel(file, options.threads)),
       filler_(file, habit_, travel_, donors_, room_, rests_),
       objects_(file),
       columns_(file.layers.size()) {

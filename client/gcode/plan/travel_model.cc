@@ -120,7 +120,7 @@ class TravelLearner {
 
 }  // namespace
 
-std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm, int threads) {
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, int threads) {
   std::vector<LayerTravel> layers(file.layers.size());
   ParallelFor(layers.size(), threads, [&file, &layers](size_t i) {
     layers[i] = TravelLearner(file).LearnLayer(file.layers[i]);
@@ -146,7 +146,6 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
     }
     models.push_back(model);
   }
-  for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
   return models;
 }
 

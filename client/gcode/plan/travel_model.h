@@ -15,16 +15,15 @@ namespace traverse::gcode {
 struct TravelModel {
   double speed_mm_s = 150;
   double accel_mm_s2 = 1250;
-  double retraction_seconds = 0;       // retracting, lifting, wiping, lowering, priming
-  double retraction_price = 0;         // the same with what the stops for it cost the travel
-  double retraction_threshold_mm = 0;  // longer moves retract
+  double retraction_seconds = 0;  // retracting, lifting, wiping, lowering, priming
+  double retraction_price = 0;    // the same with what the stops for it cost the travel
 };
 
 // [layer]. Speed and acceleration are those of most of the layer's travel. The times are the means
 // that the layer's retractions add to the travel, but for a few that last far longer; a layer
 // without such moves has that of the layer before. Retractions at marks, where tools may change,
 // count only until there are others. O(length of all links). Uses `threads` threads.
-std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm, int threads = 1);
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, int threads = 1);
 
 // The time of the travel in the link before block `block`, as it is in the file, from standstill to
 // standstill at the speed and acceleration of `model`: with its bends, at each of which the machine

@@ -56,7 +56,7 @@ TEST(LearnTravel, ARetractionDoesNotPayForTheStopBehindTheMoveInwards) {
     Sketch sketch;
     sketch.Infill(10, 0).Go(10 + inwards, 0).Add("G1 E-.8 F2100").Go(50, 0).Add("G1 E.8 F2100");
     const std::shared_ptr<GcodeFile> file = sketch.Infill(60, 0).Infill(60, 1).Read();
-    return LearnTravel(*file, 1.5)[0];
+    return LearnTravel(*file)[0];
   };
   const TravelModel at_once = learnt(0);
   const TravelModel behind = learnt(.4);
@@ -74,7 +74,7 @@ TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_EQ(file->layers.size(), 1u);
 
-  const std::vector<TravelModel> models = LearnTravel(*file, 1.5);
+  const std::vector<TravelModel> models = LearnTravel(*file);
 
   ASSERT_EQ(models.size(), 1u);
   const double still = 1.2 / 35;
@@ -93,7 +93,7 @@ TEST(LearnTravel, FewThatLastFarLongerTellNothingOfTheOthers) {
     sketch.Add("G1 E-.8 F2100").Add(change).Go(0, 90).Add("G1 E.8 F2100").Infill(10, 90);
     const std::shared_ptr<GcodeFile> file = sketch.Read();
     EXPECT_EQ(file->blocks.size(), 7u);
-    return LearnTravel(*file, 1.5)[0].retraction_seconds;
+    return LearnTravel(*file)[0].retraction_seconds;
   };
   const double usual = learn("M73 P1");
   EXPECT_GT(usual, 0.02);
@@ -111,7 +111,7 @@ TEST(LearnTravel, RetractionsAtMarksTellNothingOfTheOthers) {
   ASSERT_EQ(file->blocks.size(), 3u);
   ASSERT_NE(file->blocks[2].link & kLinkSplits, 0);
 
-  EXPECT_LT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.2);
+  EXPECT_LT(LearnTravel(*file)[0].retraction_seconds, 0.2);
 }
 
 // Better a rough price than none.
@@ -123,7 +123,7 @@ TEST(LearnTravel, RetractionsAtMarksCountWhereThereAreNoOthers) {
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_NE(file->blocks[2].link & kLinkSplits, 0);
 
-  EXPECT_GT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.04);
+  EXPECT_GT(LearnTravel(*file)[0].retraction_seconds, 0.04);
 }
 
 }  // namespace
