@@ -53,7 +53,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::Job
   static_cast<gcode::Liberties&>(rewrite) = options.gcode;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
-  if (thorough) rewrite.polish = {finish_by, options.cancel};
+  if (thorough) rewrite.polish = gcode::PolishLimit{gcode::WorkLimit(finish_by, options.cancel)};
   rewrite.hidden = job.hidden;
   rewrite.forecast_fast = options.forecast_fast && thorough;
   return RewriteGcode(*job.gcode, found, rewrite);

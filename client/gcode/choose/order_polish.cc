@@ -75,7 +75,7 @@ class OrderPolisher::Search {
     }
   }
 
-  bool IsOver() const { return state_.asked() >= most_ || polisher_.limit_.Over(); }
+  bool IsOver() const { return state_.asked() >= most_ || polisher_.limit_.work.Ended(); }
 
   void Push(uint32_t path) {
     if (queued_[path]) return;

@@ -15,23 +15,20 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <vector>
 
-#include "absl/time/clock.h"
-#include "absl/time/time.h"
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/choose/order_state.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
 // How long orders may be improved; shared by several threads.
 struct PolishLimit {
-  absl::Time until = absl::InfiniteFuture();
-  std::stop_token cancel = {};
+  WorkLimit work = {};
 
   // It is given up where estimates of travel moves gain less than this each, on the average.
   double seconds_per_travel = kSecondsPerTravel;
@@ -42,10 +39,6 @@ struct PolishLimit {
 
   // One of a travel move that leads around walls.
   static constexpr double kSecondsPerDetour = 1e-6;
-
-  bool Over() const {
-    return cancel.stop_requested() || (until != absl::InfiniteFuture() && absl::Now() >= until);
-  }
 };
 
 class OrderPolisher {

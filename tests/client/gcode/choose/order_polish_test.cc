@@ -256,13 +256,16 @@ TEST(OrderPolisher, EndsAtItsLimit) {
   PolishedLayer sheet;
   for (const double x : {0.0, 10.0, 6.0, 2.0, 8.0, 4.0, 12.0}) sheet.AddLine(x, 0);
   std::stop_source stop;
-  ASSERT_NE(sheet.Polished(sheet.Given(), {}, {absl::InfiniteFuture(), stop.get_token()}),
-            sheet.Given());
+  ASSERT_NE(
+      sheet.Polished(sheet.Given(), {}, {WorkLimit(absl::InfiniteFuture(), stop.get_token())}),
+      sheet.Given());
   stop.request_stop();
 
-  EXPECT_EQ(sheet.Polished(sheet.Given(), {}, {absl::InfiniteFuture(), stop.get_token()}),
+  EXPECT_EQ(
+      sheet.Polished(sheet.Given(), {}, {WorkLimit(absl::InfiniteFuture(), stop.get_token())}),
+      sheet.Given());
+  EXPECT_EQ(sheet.Polished(sheet.Given(), {}, {WorkLimit(absl::InfinitePast(), {})}),
             sheet.Given());
-  EXPECT_EQ(sheet.Polished(sheet.Given(), {}, {absl::InfinitePast(), {}}), sheet.Given());
 }
 
 TEST(OrderPolisher, KicksFindWhatNoSingleChangeDoes) {
