@@ -1,5 +1,6 @@
 #include "client/gcode/choose/layer_choice.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/stacked_islands.h"
+#include "client/gcode/read/least_layer_time.h"
 
 namespace traverse::gcode {
 namespace {
@@ -20,6 +22,12 @@ constexpr double kCrossingSeconds[] = {0, 0.25};
 
 // Travel moves that all layers together remember between the steps of choosing.
 constexpr size_t kMostRemembered = 400'000;
+
+// For so long islands must rest.
+double LeastRestSeconds(const GcodeFile& file, const Liberties& liberties) {
+  const double asked = liberties.min_revisit_seconds;
+  return IsFree(liberties.policy) ? asked : std::max(asked, LeastLayerSeconds(file.text));
+}
 
 }  // namespace
 
@@ -32,8 +40,7 @@ LayerChooser::LayerChooser(const GcodeFile& file, const FileOrder& found,
                                options.hidden)),
       donors_(file),
       room_(file),
-      rests_(StackIslands(file, options.threads),
-             LeastRestSeconds(file, options.policy, options.min_revisit_seconds)),
+      rests_(StackIslands(file, options.threads), LeastRestSeconds(file, options)),
       travel_(LearnTravel(file, options.threads)),
       filler_(file, habit_, travel_, donors_, room_, rests_),
       objects_(file),
@@ -270,8 +277,15 @@ void LayerChooser::FillColumn(size_t layer) {
 // The order found for layer `layer`, merged by `rules`.
 void LayerChooser::AddMerged(size_t layer, const MergeRules& rules, LayerColumn& column) {
   if (!AnyFound(layer)) return;
-  NoteBlocked(found_[layer], column);
-  const auto orders = LayerMerge(column.travels(), rules).Merge(found_[layer]);
+  const LayerOrder& found = found_[layer];
+  if (const LayerWriter& writer = *column.writer; writer.room() != nullptr) {
+    LinkParts parts(file_);
+    for (size_t place = 1; place < found.size(); ++place) {
+      const auto link = writer.EstimateTravel(place, found[place - 1], found[place], parts);
+      column.blocked |= link.blocked > 0;
+    }
+  }
+  const auto orders = LayerMerge(column.travels(), rules).Merge(found);
   for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "client/gcode/measure/layer_meter.h"
-#include "client/gcode/read/least_layer_time.h"
 
 namespace traverse::gcode {
 namespace {
@@ -46,16 +45,6 @@ double ForecastPaths(const LayerWriter& writer, const LayerOrder& order, Hiding 
     seconds += writer.EstimateTravel(places[place], from, order[place], parts, hiding).seconds;
   }
   return seconds;
-}
-
-void NoteBlocked(const LayerOrder& order, LayerColumn& column) {
-  const LayerWriter& writer = *column.writer;
-  if (writer.room() == nullptr) return;
-  LinkParts parts(writer.file());
-  for (size_t place = 1; place < order.size(); ++place) {
-    const auto link = writer.EstimateTravel(place, order[place - 1], order[place], parts);
-    column.blocked |= link.blocked > 0;
-  }
 }
 
 size_t PlaceOfLine(LayerColumn& column, size_t line) {
@@ -168,11 +157,6 @@ std::vector<LayerOrder> FastestOrders(const LayerColumn& column) {
   std::vector<LayerOrder> orders = {column.given_order()};
   for (const size_t c : numbers) orders.push_back(column.choices[c].order);
   return orders;
-}
-
-double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds) {
-  if (IsFree(policy)) return min_seconds;
-  return std::max(min_seconds, LeastLayerSeconds(file.text));
 }
 
 void FillTravels(const GcodeFile& file, const LayerColumn& before, LayerColumn& column) {

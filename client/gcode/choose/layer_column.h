@@ -14,7 +14,6 @@
 #include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/refusals.h"
 #include "client/gcode/link/link_donors.h"
-#include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/layer_writer.h"
@@ -61,9 +60,6 @@ struct LayerColumn {
   }
 };
 
-// Notes whether something stands in the way in `order`.
-void NoteBlocked(const LayerOrder& order, LayerColumn& column);
-
 // The place whose path, or the link to it, has line `line`, from 0, of the paths of `column` as
 // last chosen.
 size_t PlaceOfLine(LayerColumn& column, size_t line);
@@ -109,10 +105,6 @@ class ColumnFiller {
 
 // The file's own order, and the two of the others that take the least time.
 std::vector<LayerOrder> FastestOrders(const LayerColumn& column);
-
-// How long islands must rest under `policy`: for the file's least layer time, except where
-// IsFree(policy), and for `min_seconds`.
-double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds);
 
 // Writes and measures the travel from each choice of `before` to each of `column`, unless it is
 // refused or known. The file's own orders one after the other may always be chosen.
