@@ -3,31 +3,20 @@
 #include <bit>
 
 namespace traverse::gcode {
-namespace {
-
-constexpr int kWordBits = 64;
-
-// The multiple of `step` at or below `value`.
-int RoundDown(int value, int step) {
-  const int rest = value % step;
-  return value - (rest < 0 ? rest + step : rest);
-}
-
-}  // namespace
 
 CellTiles::CellTiles(const CellRows& rows) : box_(rows.box()) {
-  box_.row = RoundDown(rows.box().row, kSide);
+  box_.row = rows.box().row & -kSide;  // rounded down
   box_.rows = rows.box().row + rows.box().rows - box_.row;
   tiles_across_ = box_.words * kSide;
   const int tiles_down = (box_.rows + kSide - 1) / kSide;
-  const auto words = static_cast<size_t>(tiles_across_ * tiles_down / kWordBits + 1);
+  const auto words = static_cast<size_t>(tiles_across_ * tiles_down / CellRows::kWordCells + 1);
   full_.resize(words);
   mixed_.resize(words);
   rank_.resize(words);
-  const int first = box_.column / kWordBits;
+  const int first = box_.column / CellRows::kWordCells;
   for (int tile = 0; tile < tiles_across_ * tiles_down; ++tile) {
-    const auto word = static_cast<size_t>(tile / kWordBits);
-    if (tile % kWordBits == 0) rank_[word] = static_cast<uint32_t>(tiles_.size());
+    const auto word = static_cast<size_t>(tile / CellRows::kWordCells);
+    if (tile % CellRows::kWordCells == 0) rank_[word] = static_cast<uint32_t>(tiles_.size());
     const int row = box_.row + tile / tiles_across_ * kSide;
     const int across = tile % tiles_across_;
     uint64_t cells = 0;
@@ -35,7 +24,7 @@ CellTiles::CellTiles(const CellRows& rows) : box_(rows.box()) {
       const uint64_t of_row = rows.WordAt(first + across / kSide, row + i);
       cells |= (of_row >> (across % kSide * kSide) & 0xFFu) << (i * kSide);
     }
-    const uint64_t bit = uint64_t{1} << (tile % kWordBits);
+    const uint64_t bit = uint64_t{1} << (tile % CellRows::kWordCells);
     if (cells == ~uint64_t{0}) {
       full_[word] |= bit;
     } else if (cells != 0) {
@@ -49,10 +38,10 @@ CellTiles::CellTiles(const CellRows& rows) : box_(rows.box()) {
 bool CellTiles::Has(int column, int row) const {
   const int x = column - box_.column;
   const int y = row - box_.row;
-  if (x < 0 || y < 0 || x >= box_.words * kWordBits || y >= box_.rows) return false;
+  if (x < 0 || y < 0 || x >= box_.words * CellRows::kWordCells || y >= box_.rows) return false;
   const int tile = y / kSide * tiles_across_ + x / kSide;
-  const auto word = static_cast<size_t>(tile / kWordBits);
-  const uint64_t bit = uint64_t{1} << (tile % kWordBits);
+  const auto word = static_cast<size_t>(tile / CellRows::kWordCells);
+  const uint64_t bit = uint64_t{1} << (tile % CellRows::kWordCells);
   if ((full_[word] & bit) != 0) return true;
   if ((mixed_[word] & bit) == 0) return false;
   const int before = std::popcount(mixed_[word] & (bit - 1));

@@ -102,12 +102,11 @@ class Follower {
 
 }  // namespace
 
-HeadRoom::HeadRoom(const GcodeFile& file) {
+HeadRoom::HeadRoom(const GcodeFile& file) : rooms_(file.layers.size()) {
   std::vector<size_t> passes = PassesOf(file);
   if (passes.empty()) return;
   BoundingBox bounds;
   for (const Block& block : file.blocks) bounds.Add(BoundingBox(OutlineOf(file, block).shape()));
-  room_of_.assign(file.layers.size(), nullptr);
   Follower follower(file, bounds);
   int64_t steps = kMostSteps;
   size_t tiles = 0;
@@ -119,16 +118,12 @@ HeadRoom::HeadRoom(const GcodeFile& file) {
     tiles += room.tip.tiles() + room.head.tiles();
     if (tiles > kMostTiles || steps <= 0) return;
     if (!room.tip.empty() || !room.head.empty()) {
-      rooms_.push_back(std::move(room));
-      std::fill(room_of_.begin() + static_cast<std::ptrdiff_t>(first),
-                room_of_.begin() + static_cast<std::ptrdiff_t>(end), &rooms_.back());
+      std::fill(rooms_.begin() + static_cast<std::ptrdiff_t>(first),
+                rooms_.begin() + static_cast<std::ptrdiff_t>(end),
+                std::make_shared<const Room>(std::move(room)));
     }
     first = end;
   }
-}
-
-const Room* HeadRoom::Of(size_t layer) const {
-  return room_of_.empty() ? nullptr : room_of_[layer];
 }
 
 }  // namespace traverse::gcode

@@ -7,7 +7,7 @@
 #define TRAVERSE_CLIENT_GCODE_PLAN_HEAD_ROOM_H_
 
 #include <cstddef>
-#include <deque>
+#include <memory>
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
@@ -34,11 +34,10 @@ class HeadRoom {
   explicit HeadRoom(const GcodeFile& file);
 
   // Null if nothing is known to stand in the way.
-  const Room* Of(size_t layer) const;
+  const Room* Of(size_t layer) const { return rooms_[layer].get(); }
 
  private:
-  std::deque<Room> rooms_;
-  std::vector<const Room*> room_of_;  // [layer]; empty if all are null
+  std::vector<std::shared_ptr<const Room>> rooms_;  // [layer]
 };
 
 }  // namespace traverse::gcode
