@@ -178,55 +178,56 @@ bool LayerChooser::AnyFound(size_t layer) const {
 
 // What was chosen, improved as far as it is worth it: nothing else is, for that takes long.
 void LayerChooser::KickChosen() {
-  std::vector<size_t> layers;
-  for (size_t layer = 0; layer < columns_.size(); ++layer) {
-    if (AnyFound(layer) || columns_[layer].chosen != 0) layers.push_back(layer);
-  }
-  ForEachLayer(layers, [this](size_t layer) {
+  const auto is_new = [this](size_t layer) {
+    return AnyFound(layer) || columns_[layer].chosen != 0;
+  };
+  AddWhere(is_new, [this](size_t layer) {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     LayerMerge merge(column.travels(), rules);
     filler_.Add(merge.Improve(Chosen(layer).order, LayerMerge::Effort::kKick), layer, column);
   });
-  FillTravelsAround(layers);
 }
 
 // Where the file would retract more often than before, gives the layers that do so other orders
 // to choose from. True if there are such layers.
 bool LayerChooser::SpareRetractions() {
   int64_t more = 0;
-  std::vector<size_t> layers;
   for (size_t layer = 0; layer < columns_.size(); ++layer) {
     const ChoiceColumn& totals = columns_[layer].totals;
-    const uint32_t chosen = columns_[layer].chosen;
     const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
-    more += totals.Whole(before, chosen).retractions - totals.Whole(0, 0).retractions;
-    if (totals.inside[chosen].retractions > totals.inside[0].retractions) layers.push_back(layer);
+    more +=
+        totals.Whole(before, columns_[layer].chosen).retractions - totals.Whole(0, 0).retractions;
   }
-  if (more <= 0 || layers.empty()) return false;
-  ForEachLayer(layers, [this](size_t layer) { AddSparing(layer); });
-  FillTravelsAround(layers);
-  return true;
+  const auto retracts_more = [this](size_t layer) {
+    const std::vector<PrintTotals>& inside = columns_[layer].totals.inside;
+    return inside[columns_[layer].chosen].retractions > inside[0].retractions;
+  };
+  return more > 0 && AddWhere(retracts_more, [this](size_t layer) { AddSparing(layer); });
 }
 
-// After other choices were added to `layers`, which ascend.
-void LayerChooser::FillTravelsAround(const std::vector<size_t>& layers) {
+// Calls add(layer), which adds choices, for the layers of which `where` is true. True if there are
+// such layers.
+bool LayerChooser::AddWhere(const std::function<bool(size_t)>& where,
+                            const std::function<void(size_t)>& add) {
+  std::vector<size_t> layers;
+  for (size_t layer = 0; layer < columns_.size(); ++layer) {
+    if (where(layer)) layers.push_back(layer);
+  }
+  ForEachLayer(layers, add);
   std::vector<size_t> travels;
   for (const size_t layer : layers) {
     if (layer > 0 && (travels.empty() || travels.back() != layer)) travels.push_back(layer);
     if (layer + 1 < columns_.size()) travels.push_back(layer + 1);
   }
   ParallelFor(travels.size(), options_.threads, [&](size_t i) { FillTravels(travels[i]); });
+  return !layers.empty();
 }
 
 // Where links of what was chosen are ruled out, adds the same without them.
 void LayerChooser::Repair() {
-  std::vector<size_t> layers;
-  for (size_t layer = 0; layer < columns_.size(); ++layer) {
-    if (columns_[layer].refusals.ask()) layers.push_back(layer);
-  }
-  ForEachLayer(layers, [this](size_t layer) { AddRepaired(layer); });
-  FillTravelsAround(layers);
+  AddWhere([this](size_t layer) { return columns_[layer].refusals.ask(); },
+           [this](size_t layer) { AddRepaired(layer); });
 }
 
 void LayerChooser::AddRepaired(size_t layer) {

@@ -84,7 +84,7 @@ class LayerChooser {
   bool AnyFound(size_t layer) const;
   void KickChosen();
   bool SpareRetractions();
-  void FillTravelsAround(const std::vector<size_t>& layers);
+  bool AddWhere(const std::function<bool(size_t)>& where, const std::function<void(size_t)>& add);
   void Repair();
   void AddRepaired(size_t layer);
   void AddSparing(size_t layer);

@@ -113,9 +113,7 @@ void ColumnFiller::AddHidden(size_t layer, LayerColumn& column) const {
 }
 
 void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& column) const {
-  for (const LayerChoice& known : column.choices) {
-    if (known.order == order) return;
-  }
+  if (std::ranges::find(column.choices, order, &LayerChoice::order) != column.choices.end()) return;
   const std::string sparing = Add(order, layer, *column.writer, column);
   if (!habit_.spares_walls || habit_.avoids_walls) return;
   const std::vector<PrintTotals>& inside = column.totals.inside;
