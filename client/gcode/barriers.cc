@@ -92,12 +92,11 @@ Obstacle ObstacleIn(const GcodeFile& file, uint32_t block) {
 // What a layer holds in place.
 class LayerTally {
  public:
-  LayerTally(const GcodeFile& file, const Layer& layer, const LayerFreedom& freedom,
-             const std::vector<Outline>& outlines, bool fans_are_free)
+  LayerTally(const GcodeFile& file, const Layer& layer, const LayerPlan& plan, bool fans_are_free)
       : file_(file),
         layer_(layer),
-        freedom_(freedom),
-        outlines_(outlines),
+        freedom_(plan.freedom),
+        outlines_(plan.outlines),
         fans_are_free_(fans_are_free) {}
 
   Tallies Take(const ObjectOrders& objects) {
@@ -309,8 +308,7 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
     if (!counted.empty() && !counted[i]) return;
     const gcode::Layer& layer = file.layers[i];
     const gcode::LayerPlan plan = gcode::MakeLayerPlan(file, layer, policy, allow);
-    of_layer[i] =
-        gcode::LayerTally(file, layer, plan.freedom, plan.outlines, fans_are_free).Take(objects);
+    of_layer[i] = gcode::LayerTally(file, layer, plan, fans_are_free).Take(objects);
   };
   gcode::ParallelFor(of_layer.size(), gcode::ThreadsFor(file.text.size()), take, file.limit);
   gcode::Tallies all;

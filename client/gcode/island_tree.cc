@@ -1,7 +1,7 @@
 #include "client/gcode/island_tree.h"
 
+#include <compare>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace traverse::gcode {
@@ -11,15 +11,15 @@ IslandTree::IslandTree(uint32_t count, const std::vector<IslandGap>& gaps) : Isl
     int step = 0;
     uint32_t one = 0;
     uint32_t other = 0;
+
+    auto operator<=>(const Join&) const = default;
   };
   std::vector<Join> joins;
   for (const IslandGap& gap : gaps) {
     if (gap.mm > kMostMm) continue;
     joins.push_back({1 + static_cast<int>(std::max(gap.mm, 0.0) / kStepMm), gap.one, gap.other});
   }
-  std::sort(joins.begin(), joins.end(), [](const Join& a, const Join& b) {
-    return std::tie(a.step, a.one, a.other) < std::tie(b.step, b.one, b.other);
-  });
+  std::sort(joins.begin(), joins.end());
   std::vector<uint32_t> above(count);  // [node] one that it is part of; itself if it is of none
   std::iota(above.begin(), above.end(), 0);
   const auto top_of = [&above](uint32_t node) {

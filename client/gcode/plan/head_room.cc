@@ -115,9 +115,10 @@ HeadRoom::HeadRoom(const GcodeFile& file) : rooms_(file.layers.size()) {
   for (const size_t end : passes) {
     follower.FollowTo(file.blocks[file.layers[end - 1].end_block - 1].end);
     Room room = follower.EndPass(steps);
-    tiles += room.tip.tiles() + room.head.tiles();
+    const size_t of_room = room.tip.tiles() + room.head.tiles();
+    tiles += of_room;
     if (tiles > kMostTiles || steps <= 0) return;
-    if (!room.tip.empty() || !room.head.empty()) {
+    if (of_room > 0) {
       std::fill(rooms_.begin() + static_cast<std::ptrdiff_t>(first),
                 rooms_.begin() + static_cast<std::ptrdiff_t>(end),
                 std::make_shared<const Room>(std::move(room)));

@@ -76,8 +76,4 @@ std::optional<Crossings> CrossingsOfName(std::string_view name) {
   return ValueOfName<Crossings>(kCrossingsNames, name);
 }
 
-std::string_view CrossingsName(Crossings crossings) {
-  return kCrossingsNames[static_cast<size_t>(crossings)];
-}
-
 }  // namespace traverse::gcode

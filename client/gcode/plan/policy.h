@@ -70,7 +70,6 @@ inline constexpr double kFewerCrossingSeconds = 0.5;
 
 // "keep", "fewer" or "any"; nothing for other text.
 std::optional<Crossings> CrossingsOfName(std::string_view name);
-std::string_view CrossingsName(Crossings crossings);
 
 // What may change in a file. One value from the flags or the request to the choice of orders.
 struct Liberties {

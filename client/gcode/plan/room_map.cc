@@ -77,7 +77,7 @@ RoomHeight RoomMap::At(int column, int row) const {
 }
 
 bool RoomMap::IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const {
-  if (empty() || InRoomHeight(std::min(z_a_mm, z_b_mm)) + kSlack >= highest_) return true;
+  if (InRoomHeight(std::min(z_a_mm, z_b_mm)) + kSlack >= highest_) return true;
   bool clear = true;
   ForEachCell(box_, a, z_a_mm, b, z_b_mm, [&](int column, int row, double z_mm) {
     clear = InRoomHeight(z_mm) + kSlack >= At(column, row);

@@ -47,7 +47,6 @@ class RoomMap {
   // True if a move between the two points, at these heights, is high enough everywhere.
   bool IsClear(Point a, double z_a_mm, Point b, double z_b_mm) const;
 
-  bool empty() const { return tiles_.empty(); }
   size_t tiles() const { return tiles_.size(); }
 
  private:
