@@ -72,19 +72,14 @@ Obstacle ObstacleIn(const GcodeFile& file, uint32_t block) {
                           file.modes[before.mode]);
   Obstacle found;
   for (Step step; interpreter.Next(step);) {
-    const auto note = [&](Cause cause, bool always) {
-      if (always || found.at == UINT32_MAX) found = {cause, step.line.begin};
-    };
-    if (step.kind == StepKind::kUnknown) {
-      note(kUnknownLine, true);
-      return found;
-    }
+    const Offset at = step.line.begin;
+    if (step.kind == StepKind::kUnknown) return {kUnknownLine, at};
     if (step.kind == StepKind::kModeChange) {
-      note(step.command.letter == 'T' ? kToolChange : kUnknownLine, true);
-      return found;
+      return {step.command.letter == 'T' ? kToolChange : kUnknownLine, at};
     }
-    if (step.kind == StepKind::kLabel) note(kObjectLabel, found.cause != kObjectLabel);
-    if (step.kind == StepKind::kStay) note(kKnownLine, false);
+    // The first label, or else the first line that is known.
+    if (step.kind == StepKind::kLabel && found.cause != kObjectLabel) found = {kObjectLabel, at};
+    if (step.kind == StepKind::kStay && found.at == UINT32_MAX) found = {kKnownLine, at};
   }
   return found;
 }
@@ -102,7 +97,7 @@ class LayerTally {
   Tallies Take(const ObjectOrders& objects) {
     const auto paths = static_cast<uint32_t>(freedom_.rules.size());
     if (paths < 2) {
-      Note(kAlone, paths, UINT32_MAX);
+      Note(kAlone, paths);
     } else {
       for (uint32_t path = 1; path < paths; ++path) {
         if (freedom_.group[path] == path) NoteBoundary(path);
@@ -118,22 +113,19 @@ class LayerTally {
   }
 
  private:
-  void Note(Cause cause, int64_t paths, Offset at) { tallies_.of[cause].Add({paths, 0, at}); }
-
-  uint32_t SizeOfGroup(uint32_t first) const {
-    uint32_t end = first;
-    while (end < freedom_.group.size() && freedom_.group[end] == first) ++end;
-    return end - first;
+  void Note(Cause cause, int64_t paths, Offset at = UINT32_MAX) {
+    tallies_.of[cause].Add({paths, 0, at});
   }
 
   // Between `path`, with which a group begins, and the one before it.
   void NoteBoundary(uint32_t path) {
     const uint32_t block = layer_.first_block + path;
-    const uint32_t kept = std::min(SizeOfGroup(path), path - freedom_.group[path - 1]);
+    const auto end = std::ranges::upper_bound(freedom_.group, path) - freedom_.group.begin();
+    const auto kept = std::min<int64_t>(end - path, path - freedom_.group[path - 1]);
     const auto is = [&](uint32_t of, Feature feature) { return outlines_[of].feature == feature; };
     for (const uint32_t one : {path - 1, path}) {
       const Block& kept_block = file_.blocks[layer_.first_block + one];
-      if (is(one, Feature::kTower)) return Note(kTower, kept, UINT32_MAX);
+      if (is(one, Feature::kTower)) return Note(kTower, kept);
       if (is(one, Feature::kCustom) || (kept_block.flags & kBlockScript) != 0) {
         return Note(kScript, kept, kept_block.begin);
       }
@@ -147,7 +139,7 @@ class LayerTally {
       const Obstacle obstacle = ObstacleIn(file_, block);
       if (obstacle.at != UINT32_MAX) return Note(obstacle.cause, kept, obstacle.at);
     }
-    if (!fans_are_free_ && FanChanges(file_, block)) Note(kFanChange, kept, UINT32_MAX);
+    if (!fans_are_free_ && FanChanges(file_, block)) Note(kFanChange, kept);
   }
 
   static bool IsSupport(Feature feature) {
@@ -175,7 +167,7 @@ class LayerTally {
     }
     for (size_t cause = 0; cause < kCauses; ++cause) {
       const auto paths = std::count(held[cause].begin(), held[cause].end(), true);
-      if (paths > 0) Note(static_cast<Cause>(cause), paths, UINT32_MAX);
+      if (paths > 0) Note(static_cast<Cause>(cause), paths);
     }
   }
 

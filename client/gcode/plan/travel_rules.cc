@@ -24,10 +24,11 @@ bool IsInside(Feature feature) {
          feature == Feature::kTopInfill;
 }
 
-RetractionCount SumInside(const RetractionCounts& counts) {
+// Of all features, or of those inside.
+RetractionCount SumOf(const RetractionCounts& counts, bool inside) {
   RetractionCount sum;
   for (size_t i = 0; i < counts.size(); ++i) {
-    if (!IsInside(static_cast<Feature>(i))) continue;
+    if (inside && !IsInside(static_cast<Feature>(i))) continue;
     sum.retracted += counts[i].retracted;
     sum.not_retracted += counts[i].not_retracted;
   }
@@ -176,12 +177,8 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
     Count(file, file.layers[i], outlines, VisibleWalls(outlines), habit.threshold_mm, habit.inside);
   }
-  habit.all_inside = SumInside(habit.inside);
-  RetractionCount all;
-  for (const RetractionCount& count : habit.inside) {
-    all.retracted += count.retracted;
-    all.not_retracted += count.not_retracted;
-  }
+  habit.all_inside = SumOf(habit.inside, /*inside=*/true);
+  const RetractionCount all = SumOf(habit.inside, /*inside=*/false);
   habit.crossing_matters = all.not_retracted * 10 >= all.total() && all.not_retracted > 0;
   return habit;
 }
@@ -212,7 +209,7 @@ TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const Retrac
                   : std::nullopt) {
   if (habit.crossing_matters) {
     Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
-    all_inside_ = SumInside(inside_);
+    all_inside_ = SumOf(inside_, /*inside=*/true);
   }
 }
 
