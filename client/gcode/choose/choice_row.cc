@@ -1,6 +1,5 @@
 #include "client/gcode/choose/choice_row.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>

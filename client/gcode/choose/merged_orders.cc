@@ -26,10 +26,7 @@ MergeLimits LimitsOf(const TravelTotals& given, const MergeRules& rules) {
   if (rules.crossings != Crossings::kAny) limits.crossings = given.crossings;
   if (rules.crossings == Crossings::kFewer) limits.crossing_seconds = kFewerCrossingSeconds;
   limits.open = given.open;
-  if (rules.as_many_retractions) {
-    limits.retractions = given.retractions;
-    limits.as_many_retractions = true;
-  }
+  if (rules.as_many_retractions) limits.retractions = limits.least_retractions = given.retractions;
   return limits;
 }
 

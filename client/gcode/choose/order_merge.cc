@@ -116,11 +116,10 @@ double OrderMerger::Excess(const TravelTotals& totals) const {
   const auto beyond = [](int64_t value, int64_t limit) {
     return value > limit ? static_cast<double>(value - limit) : 0.0;
   };
-  double excess = beyond(totals.crossings, limits_.crossings) + beyond(totals.open, limits_.open) +
-                  static_cast<double>(totals.too_long) + static_cast<double>(totals.blocked) +
-                  beyond(totals.retractions, limits_.retractions);
-  if (limits_.as_many_retractions) excess += beyond(limits_.retractions, totals.retractions);
-  return excess;
+  return beyond(totals.crossings, limits_.crossings) + beyond(totals.open, limits_.open) +
+         static_cast<double>(totals.too_long) + static_cast<double>(totals.blocked) +
+         beyond(totals.retractions, limits_.retractions) +
+         beyond(limits_.least_retractions, totals.retractions);
 }
 
 double OrderMerger::Score(const TravelTotals& totals) const {

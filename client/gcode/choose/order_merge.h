@@ -22,12 +22,12 @@
 
 namespace traverse::gcode {
 
-// The most that an order may amount to.
+// The most that an order may amount to, and the fewest retractions.
 struct MergeLimits {
   int64_t crossings = std::numeric_limits<int64_t>::max();
   int64_t open = std::numeric_limits<int64_t>::max();
   int64_t retractions = std::numeric_limits<int64_t>::max();
-  bool as_many_retractions = false;  // and no fewer
+  int64_t least_retractions = 0;
 
   double crossing_seconds = 0;    // the cost of each crossing
   double retraction_seconds = 0;  // and of each retraction beside its time

@@ -78,7 +78,7 @@ TEST(OrderMerger, AsManyRetractionsMeansNoFewerEither) {
   };
   EXPECT_EQ(excess(2), 0);
   EXPECT_EQ(excess(6), 2);
-  limits.as_many_retractions = true;
+  limits.least_retractions = limits.retractions;
   EXPECT_EQ(excess(2), 2);
   EXPECT_EQ(excess(4), 0);
   EXPECT_EQ(excess(6), 2);
