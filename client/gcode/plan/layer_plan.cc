@@ -12,7 +12,6 @@
 #include "client/gcode/model/visible_walls.h"
 #include "client/gcode/plan/loop_starts.h"
 #include "client/gcode/plan/precedence.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
