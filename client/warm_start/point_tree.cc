@@ -1,6 +1,8 @@
 #include "client/warm_start/point_tree.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <tuple>
 
 namespace traverse {
@@ -14,6 +16,9 @@ double SquareTo(const OwnedPoint& point, double x, double y) {
 
 PointTree::PointTree(std::vector<OwnedPoint> points)
     : points_(std::move(points)), left_(points_.size()), removed_(points_.size()) {
+  assert(std::all_of(points_.begin(), points_.end(), [](const OwnedPoint& point) {
+    return std::isfinite(point.x) && std::isfinite(point.y);
+  }));
   Build({0, points_.size(), true});
   for (size_t i = 0; i < points_.size(); ++i) {
     const auto owner = static_cast<size_t>(points_[i].owner);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -39,6 +40,7 @@ class RouteMaker {
 
   // Empty if the layer allows no order. REQUIRES: some path is known.
   std::vector<v1::Visit> Route() {
+    assert(!known_.empty());
     std::map<size_t, std::vector<int>> news;  // by the known visit before which they come
     for (size_t p = 0; p < shape_.paths.size(); ++p) {
       if (rank_[p] < 0) news[GapFor(shape_.paths[p])].push_back(static_cast<int>(p));

@@ -1,6 +1,7 @@
 #include "engine/model/route_fault.h"
 
 #include <algorithm>
+#include <cassert>
 #include <climits>
 #include <tuple>
 #include <utility>
@@ -66,6 +67,7 @@ class Walk {
 
   // REQUIRES: NodeBefore(path) < 0, and the path is not visited.
   void Visit(int path) {
+    assert(!visited_[static_cast<size_t>(path)] && NodeBefore(path) < 0);
     visited_[static_cast<size_t>(path)] = true;
     int child = tree_.leaf(path);
     for (int node = tree_.parent(child); node >= 0; child = node, node = tree_.parent(node)) {

@@ -1,6 +1,7 @@
 #include "engine/search/order_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -90,6 +91,7 @@ class OrderTree::Compiler {
     tree_.has_choice_ = tree_.has_choice_ || (any_order && children.size() > 1);
     std::vector<int> items;
     for (const int child : children) items.push_back(Compile(child));
+    assert(!items.empty());
     if (items.size() == 1) return items[0];
     if (tree_.free_order(item)) AddPairs(index, item, items);
     Adopt(item, items);

@@ -68,7 +68,7 @@ class Listener {
   static absl::StatusOr<std::unique_ptr<Listener>> Open(
       const ListenerOptions& options, std::shared_ptr<CertificateStore> certificates, Hooks hooks);
 
-  // REQUIRES: Shutdown was called, or Serve was not.
+  // Shuts down at once, if nobody did.
   ~Listener();
 
   Listener(const Listener&) = delete;

@@ -5,6 +5,7 @@
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SHARES_H_
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -42,8 +43,9 @@ class Shares {
   // REQUIRES: `caller` has taken as many.
   void GiveBack(uint64_t count, const std::string& caller) {
     MutexLock lock(mutex_);
-    used_ -= count;
     const auto own = callers_.find(caller);
+    assert(count == 0 || (own != callers_.end() && own->second >= count));
+    used_ -= count;
     if (own != callers_.end() && (own->second -= count) == 0) callers_.erase(own);
   }
 

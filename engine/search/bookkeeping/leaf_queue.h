@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_SEARCH_BOOKKEEPING_LEAF_QUEUE_H_
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -43,6 +44,7 @@ class LeafQueue {
 
   // REQUIRES: it is not empty.
   int Pop() {
+    assert(!empty());
     const int leaf = ring_[head_];
     if (++head_ == ring_.size()) head_ = 0;
     --size_;

@@ -1,6 +1,7 @@
 #include "engine/weller/steps/neighborhood.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -54,6 +55,7 @@ class NearestContours {
   // The next contour and its distance. REQUIRES: not empty.
   std::pair<int, double> Next() {
     while (true) {
+      assert(!empty());
       const Candidate candidate = queue_.top();
       queue_.pop();
       if (candidate.exact) return {candidate.node, candidate.distance};
