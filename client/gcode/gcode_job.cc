@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/barriers.h"
-#include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/rows/island_rests.h"
 #include "client/gcode/link/link_looks.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/part_links.h"

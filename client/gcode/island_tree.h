@@ -1,9 +1,10 @@
 // Islands that count as one, whatever the distance at which they do.
 //
 // Where an island ends is a matter of opinion: two walls 1.5 mm apart warm each other, or do not.
-// So rests (choose/island_rests.h, verify/rules/rest.h) hold for all of them: for each connected
-// region of paths, and for each region of such islands that are joined if those count as one that
-// lie within some distance of each other, up to 2 mm. They form a tree, the nearest joined first.
+// So rests (choose/rows/island_rests.h, verify/rules/rest.h) hold for all of them: for each
+// connected region of paths, and for each region of such islands that are joined if those count as
+// one that lie within some distance of each other, up to 2 mm. They form a tree, the nearest joined
+// first.
 //
 //   islands   a   1.4 mm   b   1.8 mm   c      nodes   a, b, c; a+b at 1.4; a+b+c at 1.8
 

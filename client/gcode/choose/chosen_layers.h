@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "client/gcode/choose/island_rests.h"
-#include "client/gcode/choose/order_polish.h"
+#include "client/gcode/choose/orders/order_polish.h"
+#include "client/gcode/choose/rows/island_rests.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/part_start.h"
 #include "client/gcode/model/placed_path.h"

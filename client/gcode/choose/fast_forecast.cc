@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "client/gcode/choose/cheapest_row.h"
-#include "client/gcode/choose/known_travels.h"
 #include "client/gcode/choose/merged_orders.h"
+#include "client/gcode/choose/orders/known_travels.h"
+#include "client/gcode/choose/rows/cheapest_row.h"
 #include "client/gcode/hidden/hidden_moves.h"
 
 namespace traverse::gcode {

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <utility>
 
-#include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/fast_forecast.h"
-#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/choose/rows/choice_row.h"
+#include "client/gcode/choose/rows/rested_row.h"
 #include "client/gcode/hidden/hidden_moves.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/layer_freedom.h"

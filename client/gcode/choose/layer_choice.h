@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "client/gcode/choose/chosen_layers.h"
-#include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/choose/object_orders.h"
-#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/choose/rows/island_rests.h"
+#include "client/gcode/choose/rows/rested_row.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/head_room.h"
 #include "client/gcode/plan/travel_model.h"

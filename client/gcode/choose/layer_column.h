@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "client/gcode/choose/choice_row.h"
-#include "client/gcode/choose/island_rests.h"
-#include "client/gcode/choose/known_travels.h"
+#include "client/gcode/choose/orders/known_travels.h"
 #include "client/gcode/choose/refusals.h"
+#include "client/gcode/choose/rows/choice_row.h"
+#include "client/gcode/choose/rows/island_rests.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "client/gcode/choose/order_state.h"
+#include "client/gcode/choose/orders/order_state.h"
 
 namespace traverse::gcode {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "client/gcode/choose/known_travels.h"
-#include "client/gcode/choose/order_merge.h"
-#include "client/gcode/choose/order_polish.h"
-#include "client/gcode/choose/order_repair.h"
-#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/choose/orders/known_travels.h"
+#include "client/gcode/choose/orders/order_merge.h"
+#include "client/gcode/choose/orders/order_polish.h"
+#include "client/gcode/choose/orders/order_repair.h"
+#include "client/gcode/choose/rows/rested_row.h"
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "absl/container/flat_hash_set.h"
-#include "client/gcode/choose/order_repair.h"
+#include "client/gcode/choose/orders/order_repair.h"
 
 namespace traverse::gcode {
 

@@ -77,8 +77,8 @@ struct Liberties {
   Crossings crossings = Crossings::kKeep;
   Allowance allow = {};
 
-  // No island rests shorter than so long, or than in the file (choose/island_rests.h). Except under
-  // Policy::kFree none rests shorter than the file's least layer time either.
+  // No island rests shorter than so long, or than in the file (choose/rows/island_rests.h). Except
+  // under Policy::kFree none rests shorter than the file's least layer time either.
   double min_revisit_seconds = 0;
 };
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/gcode/choose/known_travels.h"
+#include "client/gcode/choose/orders/known_travels.h"
 #include "client/gcode/link/link_donors.h"
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/read/reader.h"

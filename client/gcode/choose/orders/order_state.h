@@ -4,8 +4,8 @@
 //   ... p | B .. | q ...           ->   ... p | B backwards | q ...    a run is reversed
 //   ... p | b | q ...              ->   ... p | b' | q ...             a path begins elsewhere
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_STATE_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_STATE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_STATE_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_STATE_H_
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "client/gcode/choose/order_merge.h"
+#include "client/gcode/choose/orders/order_merge.h"
 #include "client/gcode/link/travel_totals.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/placed_path.h"
@@ -135,4 +135,4 @@ class OrderState {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_STATE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_STATE_H_

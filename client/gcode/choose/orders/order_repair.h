@@ -9,8 +9,8 @@
 // Each pair of paths stays in the order in which it was, or is as sliced: what both orders keep to,
 // the result keeps to.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_REPAIR_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_REPAIR_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_REPAIR_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_REPAIR_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -66,4 +66,4 @@ LayerOrder EndedAsSliced(const LayerOrder& order, const LayerOrder& sliced);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_REPAIR_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_REPAIR_H_

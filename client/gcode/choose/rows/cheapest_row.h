@@ -1,7 +1,7 @@
 // A shortest path through columns of choices.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_CHEAPEST_ROW_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_CHEAPEST_ROW_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHEAPEST_ROW_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHEAPEST_ROW_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -52,4 +52,4 @@ class CheapestRow {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_CHEAPEST_ROW_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHEAPEST_ROW_H_

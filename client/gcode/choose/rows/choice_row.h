@@ -5,8 +5,8 @@
 // layers, so the best row of choices is a shortest path. Rules for a layer forbid edges; rules for
 // the file become a price, so high that the best row obeys them. O(layers * choices^2) per price.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHOICE_ROW_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHOICE_ROW_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -45,4 +45,4 @@ std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, C
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_CHOICE_ROW_H_

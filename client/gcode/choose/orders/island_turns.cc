@@ -1,4 +1,4 @@
-#include "client/gcode/choose/island_turns.h"
+#include "client/gcode/choose/orders/island_turns.h"
 
 #include <algorithm>
 #include <cassert>

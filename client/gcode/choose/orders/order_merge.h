@@ -8,8 +8,8 @@
 // Keeps what makes the order better, until nothing does. Pairs of paths on whose order all agree
 // stay in that order; so do the first and the last path of the order that is begun with.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_MERGE_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_MERGE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -67,4 +67,4 @@ class OrderMerger {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_MERGE_H_

@@ -1,4 +1,4 @@
-#include "client/gcode/choose/order_state.h"
+#include "client/gcode/choose/orders/order_state.h"
 
 #include <algorithm>
 #include <cassert>

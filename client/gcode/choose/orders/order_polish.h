@@ -10,15 +10,15 @@
 // then the search improves what lies around them, and undoes all of it if the order has not become
 // better.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_POLISH_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_POLISH_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_POLISH_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_POLISH_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "client/gcode/choose/order_merge.h"
-#include "client/gcode/choose/order_state.h"
+#include "client/gcode/choose/orders/order_merge.h"
+#include "client/gcode/choose/orders/order_state.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
@@ -86,4 +86,4 @@ class OrderPolisher {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_POLISH_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ORDER_POLISH_H_

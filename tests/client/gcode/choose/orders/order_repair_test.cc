@@ -1,6 +1,6 @@
-// Orders without one of their links: client/gcode/choose/order_repair.h.
+// Orders without one of their links: client/gcode/choose/orders/order_repair.h.
 
-#include "client/gcode/choose/order_repair.h"
+#include "client/gcode/choose/orders/order_repair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

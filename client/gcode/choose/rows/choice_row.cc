@@ -1,11 +1,11 @@
-#include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/rows/choice_row.h"
 
 #include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "client/gcode/choose/cheapest_row.h"
+#include "client/gcode/choose/rows/cheapest_row.h"
 
 namespace traverse::gcode {
 namespace {

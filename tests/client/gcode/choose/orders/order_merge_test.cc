@@ -1,6 +1,6 @@
-// The best of several orders: client/gcode/choose/order_merge.h.
+// The best of several orders: client/gcode/choose/orders/order_merge.h.
 
-#include "client/gcode/choose/order_merge.h"
+#include "client/gcode/choose/orders/order_merge.h"
 
 #include <gtest/gtest.h>
 

@@ -14,15 +14,15 @@
 // An order that comes back to islands is also tried with each island's paths together, and with the
 // islands in the sequence of the file. Where islands near each other count as one, so are these.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_TURNS_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_TURNS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ISLAND_TURNS_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ISLAND_TURNS_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
-#include "client/gcode/choose/order_merge.h"
+#include "client/gcode/choose/orders/order_merge.h"
 #include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
 
@@ -107,4 +107,4 @@ class IslandTurns {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_TURNS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_ISLAND_TURNS_H_

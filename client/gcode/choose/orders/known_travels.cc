@@ -1,4 +1,4 @@
-#include "client/gcode/choose/known_travels.h"
+#include "client/gcode/choose/orders/known_travels.h"
 
 #include <algorithm>
 #include <utility>

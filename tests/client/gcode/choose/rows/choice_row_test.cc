@@ -1,6 +1,6 @@
-// Rows of choices: client/gcode/choose/choice_row.h.
+// Rows of choices: client/gcode/choose/rows/choice_row.h.
 
-#include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/rows/choice_row.h"
 
 #include <gtest/gtest.h>
 

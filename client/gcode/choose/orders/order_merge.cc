@@ -1,4 +1,4 @@
-#include "client/gcode/choose/order_merge.h"
+#include "client/gcode/choose/orders/order_merge.h"
 
 #include <algorithm>
 #include <cmath>

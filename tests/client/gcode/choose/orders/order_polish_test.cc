@@ -1,6 +1,6 @@
-// Orders made better by small moves: client/gcode/choose/order_polish.h.
+// Orders made better by small moves: client/gcode/choose/orders/order_polish.h.
 
-#include "client/gcode/choose/order_polish.h"
+#include "client/gcode/choose/orders/order_polish.h"
 
 #include <gtest/gtest.h>
 

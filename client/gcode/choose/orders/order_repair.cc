@@ -1,4 +1,4 @@
-#include "client/gcode/choose/order_repair.h"
+#include "client/gcode/choose/orders/order_repair.h"
 
 #include <algorithm>
 #include <cassert>

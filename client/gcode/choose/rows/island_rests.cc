@@ -1,4 +1,4 @@
-#include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/rows/island_rests.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,7 @@
 // The travel moves between the paths of one layer, as estimated.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_KNOWN_TRAVELS_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_KNOWN_TRAVELS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_KNOWN_TRAVELS_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_KNOWN_TRAVELS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -65,4 +65,4 @@ class KnownTravels {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_KNOWN_TRAVELS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDERS_KNOWN_TRAVELS_H_

@@ -1,6 +1,6 @@
-// Orders of a layer that begin at other islands: client/gcode/choose/island_turns.h.
+// Orders of a layer that begin at other islands: client/gcode/choose/orders/island_turns.h.
 
-#include "client/gcode/choose/island_turns.h"
+#include "client/gcode/choose/orders/island_turns.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/choose/rows/rested_row.h"
 
 #include <utility>
 
-#include "client/gcode/choose/cheapest_row.h"
+#include "client/gcode/choose/rows/cheapest_row.h"
 
 namespace traverse::gcode {
 namespace {

@@ -8,8 +8,8 @@
 // prints nothing else meanwhile, it does not rest, and need not here. Times are nominal ones
 // (nominal_time.h).
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_RESTS_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_RESTS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_ISLAND_RESTS_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_ISLAND_RESTS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -89,4 +89,4 @@ std::optional<LeastRest> LeastRestOf(const GcodeFile& file, int threads);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_RESTS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_ISLAND_RESTS_H_

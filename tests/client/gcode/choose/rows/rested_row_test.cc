@@ -1,6 +1,6 @@
-// Turned orders of all layers in which islands rest: client/gcode/choose/rested_row.h.
+// Turned orders of all layers in which islands rest: client/gcode/choose/rows/rested_row.h.
 
-#include "client/gcode/choose/rested_row.h"
+#include "client/gcode/choose/rows/rested_row.h"
 
 #include <gtest/gtest.h>
 

@@ -5,15 +5,15 @@
 // estimates: a shortest path through them, whose edges are the pairs that leave each island enough
 // rest.
 
-#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
-#define TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_RESTED_ROW_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_RESTED_ROW_H_
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "client/gcode/choose/island_rests.h"
-#include "client/gcode/choose/island_turns.h"
+#include "client/gcode/choose/orders/island_turns.h"
+#include "client/gcode/choose/rows/island_rests.h"
 #include "engine/model/point.h"
 
 namespace traverse::gcode {
@@ -41,4 +41,4 @@ std::vector<std::optional<uint32_t>> RestedRow(const IslandRests& rests,
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ROWS_RESTED_ROW_H_

@@ -1,4 +1,4 @@
-#include "client/gcode/choose/order_polish.h"
+#include "client/gcode/choose/orders/order_polish.h"
 
 #include <algorithm>
 #include <cassert>
