@@ -90,12 +90,8 @@ COUNTS_FOR_AN_ASSERTION = "what it counts is looked at in an assertion"
 ORDER_ON_THE_CURVE = "which points share a leaf changes how long a search takes, and not what it finds"
 PRUNES_LESS = "a bound that rules out less: the cost itself is looked at behind it"
 NOTHING_TO_LET_IN = "tasks are held back only while all permits are in use"
-ONLY_MEMORY = "more memory than needed is held"
-VISITS = "client/gcode/verify/match/visits.cc"
 POINT_INDEX = "engine/geometry/nearest_point_index.cc"
 EQUIVALENT = {
-    (VISITS, "without segments += chunk.paths[path].size();"): COUNTS_FOR_AN_ASSERTION,
-    (VISITS, "segments -= chunk.paths[path].size();"): COUNTS_FOR_AN_ASSERTION,
     (POINT_INDEX, "without x &= 0xffff;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 8)) & 0x00ff00ff;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 4)) & 0x0f0f0f0f;"): ORDER_ON_THE_CURVE,
@@ -109,6 +105,5 @@ EQUIVALENT = {
         COUNTS_FOR_AN_ASSERTION,
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
     ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
-    (VISITS, "while (size < 2 * static_cast<size_t>(end + first)) size *= 2;"): ONLY_MEMORY,
     ("engine/cost/neighbor_lists.cc", "if (far_squared >= near_squared ||"): PRUNES_LESS,
 }
