@@ -59,6 +59,7 @@ ATTACKS = {
     "unfinished_chunks": files.unfinished_uploads(1000, chunked=True),
     "long_uploads": files.unfinished_uploads(20_000_000, most=20),
     "unread_answers": files.unread_answers,
+    "readers_that_go": files.readers_that_go,
     "rubbish": files.rubbish,
     "stated_meatpack": files.posts([files.stated_meatpack]),
     "large_dictionary": files.posts([files.large_dictionary]),

@@ -140,7 +140,7 @@ void RewriteReactor::OnWriteDone(bool ok) {
   // What is made is sent without a pause, and its time is counted as a whole.
   if (!made_) live_.Rests(&context_);
   writing_ = false;
-  if (ok) return Next();
+  if (ok || end_) return Next();
   stop_.request_stop();
   // A running task ends the call itself.
   if (made_) End(absl::CancelledError("the client does not read"));

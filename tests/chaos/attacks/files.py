@@ -11,7 +11,7 @@ import zlib
 
 from attacks.attacked_server import infill
 from attacks.transport import patiently, until
-from http2_client import GCODE_SERVICE, Connection, Window, field, message
+from http2_client import DATA, END_STREAM, GCODE_SERVICE, RST_STREAM, Connection, Window, field, frame, message, varint
 
 
 def open_http(server, source="127.0.0.1"):
@@ -87,6 +87,26 @@ def unread_answers(server, end):
     """Pipelined requests whose answers nobody reads."""
     body = infill(300)
     leave_unread(server, end, (b"POST /v1/gcode?strategy=none HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % len(body) + body) * 20)
+
+
+def readers_that_go(server, end):
+    """Files to rewrite, good and refused, whose readers let no answer in, or all, and leave at any moment."""
+    dice = random.Random(53)
+    layers_that_are_not_there = varint(5 << 3) + varint(9) + varint(6 << 3) + varint(9)
+    calls = [message(field(1, options)) + message(field(2, content)) for options in (b"", layers_that_are_not_there)
+             for content in (infill(2), infill(30), b"nothing of a slicer\n")]
+
+    def step():
+        connection = Connection(server.port, window=dice.choice([0, None]))
+        for _ in range(5):
+            stream = connection.call(GCODE_SERVICE + "Rewrite")
+            connection.send(frame(DATA, END_STREAM, stream, dice.choice(calls)))
+            time.sleep(dice.choice([0, 0.001, 0.01, 0.1]))
+            if dice.randrange(4):
+                connection.send(frame(RST_STREAM, 0, stream, struct.pack(">I", 8)))
+        connection.close()
+
+    until(end, patiently(step))
 
 
 def rubbish(server, end):

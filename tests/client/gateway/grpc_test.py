@@ -14,6 +14,9 @@ import unittest
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
 from gateway_process import ENDLESS, TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
 
+sys.path.append(os.path.join(TESTS, "chaos"))
+from http2_client import GCODE_SERVICE, Connection, message
+
 PROTO = os.path.join(os.path.dirname(TESTS), "proto")
 PART = lines_of_infill(3)
 
@@ -42,6 +45,7 @@ def messages():
 
 
 MESSAGES = messages()
+SEARCHING = 3  # RewriteProgress.STAGE_SEARCHING
 # What ENDLESS says in words.
 ENDLESS_OPTIONS = {"layer_time_limit": {"seconds": 1000},
                    "strategy": {"name": "tabu", "options": {"evaluations": "0", "diversifications": "1000000"}}}
@@ -233,14 +237,30 @@ class Calls(OnGateway):
             self.rewrite(lines_of_infill(200), timeout=0.3)
         self.assertIn(raised.exception.code(), (grpc.StatusCode.FAILED_PRECONDITION, grpc.StatusCode.DEADLINE_EXCEEDED))
 
+    def await_metric(self, name, value):
+        end = time.time() + 60
+        while self.gateway.metric(name) != value and time.time() < end:
+            time.sleep(0.02)
+        self.assertEqual(self.gateway.metric(name), value)
+
     def test_cancelling_ends_the_work(self):
         call = self.method("Rewrite")(self.requests(endless_infill(), **ENDLESS_OPTIONS), timeout=60)
-        next(call)
+        while next(call).progress.stage != SEARCHING:
+            pass
         call.cancel()
-        deadline = time.time() + 10
-        while self.gateway.metric("traverse_gateway_requests_in_flight") > 0 and time.time() < deadline:
-            time.sleep(0.05)
-        self.assertEqual(self.gateway.metric("traverse_gateway_requests_in_flight"), 0)
+        self.await_metric("traverse_gateway_requests_in_flight", 0)
+
+    def test_a_reader_that_goes_frees_a_call_whose_work_has_failed(self):
+        """The work ends while the first word of its progress waits for a reader whose window is shut."""
+        refused = 'traverse_gateway_files_total{outcome="refused"}'
+        before = self.gateway.metric(refused)
+        connection = Connection(self.gateway.grpc_port, window=0)
+        stream = connection.call(GCODE_SERVICE + "Rewrite")
+        requests = self.requests(PART, first_layer=2, last_layer=9)
+        connection.data(stream, b"".join(message(request.SerializeToString()) for request in requests), end=True)
+        self.await_metric(refused, before + 1)
+        connection.close()
+        self.await_metric("traverse_gateway_requests_in_flight", 0)
 
     def test_a_client_that_stops_is_given_up(self):
         stop = threading.Event()
