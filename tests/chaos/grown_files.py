@@ -333,6 +333,21 @@ def long_wipe(n):
     return one_layer(WALL + square(0, 0, 9) + wipe + f"G1 X20 Y20 F9000\nG1 E{n / 1000} F2100\n" + square(20, 20, 9) + square(40, 0, 9))
 
 
+def back_along(word, end):
+    """A long path, and as many moves behind it that lead back along it."""
+    def made(n):
+        places = [(i * 37 % 100, i * 200 / n) for i in range(n)]
+        path = "".join(f"G1 X{x} Y{y:.4f} E.1\n" for x, y in places)
+        back = "".join(f"G1 X{x} Y{y:.4f}{word}\n" for x, y in reversed(places))
+        return one_layer(INFILL + travel(0, 0) + path + back + end.format(n / 1000) + line(0, 205, 9, 205) + line(0, 210, 9, 210))
+
+    return made
+
+
+DIMENSIONS |= {"tail_along": back_along("", ""), "travel_along": back_along(" F9000", ""),
+               "wipe_along": back_along(" E-.001 F9000", "G1 E{} F2100\n")}
+
+
 @dimension
 def relative(n):
     return one_layer(INFILL + "".join(travel(x, y) + "G91\nG1 X1 E.2\nG1 Y1 E.2\nG90\n" for x, y in spots(n)))
@@ -351,6 +366,12 @@ def scarf_seams(n):
                 f"G1 X{x + 1} Z{z - .5:.1f} E.1\nG1 X{x + 2} Z{z} E.2\nG1 Y{y + 2} E.4\nG1 X{x} E.4\nG1 Y{y} E.4\nG1 X{x + 2} E.1\n")
 
     return HEAD + "".join(LAYER.format(z=z) + "".join(seam(x, y, z) for x, y in spots(n // 3 + 1, z)) for z in range(1, 4)) + "M107\n"
+
+
+@dimension
+def commands_inside(n):
+    """A path of each layer has one."""
+    return in_layers(n, lambda z: INFILL + line(z % 9, 0, 9, 50) + f"M117 layer {z}\nG1 X0 Y60 E.4\n" + line(0, 70, 9, 70))
 
 
 # What stands between paths.

@@ -59,6 +59,8 @@ class IslandFinder {
   // pieces are looked at.
   void JoinNear() {
     whole_.resize(tree_.node_count());
+    // Where all pieces are of one path, nobody needs to look.
+    for (uint32_t node = tree_.node_count(); node-- > 0;) IsWhole(node);
     looks_ = tree_.most_looks();
     std::vector<uint32_t> longer(reach_.size());  // paths with more than `k` pieces
     std::iota(longer.begin(), longer.end(), first_);
