@@ -129,6 +129,7 @@ struct Wipe {
   float pulled_mm = 0;      // filament
   float steepest = 0;       // the most per mm of one of its longer moves
   float uneven_mm = 0;      // by how much, at some point, its filament is off an even rate
+  uint32_t moves = 0;       // of which no more than kMostAlong are compared with its path
   bool turns_back = false;  // somewhere where its path does not
   bool known = true;        // the original has all its moves in this layer
   uint32_t path_line = 0;   // where its path begins in the original

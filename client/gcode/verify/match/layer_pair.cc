@@ -44,6 +44,12 @@ bool GoesStraightOn(const TraceMove& move, const Piece& last) {
   return dot >= (length < kLeastDepartureMm ? 0 : kStraightCosine * length * before);
 }
 
+// The moves behind the path that may go along it.
+absl::Span<const TraceMove> MovesBeside(const TraceChunk& chunk, uint32_t path) {
+  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
+  return moves.first(std::min(moves.size(), kMostAlong));
+}
+
 // How many moves coast at the beginning of the link behind `path`, whose last line is `last`: no
 // faster than the path, they go straight on from there. Slicers coast round corners, too; but what
 // leads farther, or to the next path, is travel behind the first of them.
@@ -65,9 +71,8 @@ uint32_t CoastingMoves(const TraceChunk& chunk, uint32_t path, const Piece& last
 }
 
 bool LiesWithin(double mm, Point p, absl::Span<const Piece> pieces) {
-  return std::ranges::any_of(pieces, [p, mm](const Piece& piece) {
-    return DistanceToPiece(p, piece.a, piece.b) <= mm;
-  });
+  return std::ranges::any_of(
+      pieces, [p, mm](const Piece& piece) { return DistanceToPiece(p, piece.a, piece.b) <= mm; });
 }
 
 // How near to the path a move along it lies: a short one that leads aside is soon as near, and
@@ -77,6 +82,50 @@ double BesideMm(const TraceMove& move) {
   constexpr double kRoundedMm = 0.012;
   const double length = move.length_mm();
   return length <= kOnPathMm ? kOnPathMm : std::clamp(kSlope * length, kRoundedMm, kOnPathMm);
+}
+
+// Whether `move` leads along the path, whose pieces are `pieces`, or back along `before` it.
+bool LeadsAlong(const TraceMove& move, absl::Span<const TraceMove> before,
+                absl::Span<const Piece> pieces, double mm) {
+  const auto lies_on = [&](Point p) {
+    return std::ranges::any_of(before,
+                               [p, mm](const TraceMove& other) {
+                                 return DistanceToPiece(p, other.from, other.to) <= mm;
+                               }) ||
+           LiesWithin(mm, p, pieces);
+  };
+  return lies_on(move.to) && lies_on(move.middle);
+}
+
+// How many moves behind the path, whose pieces are `pieces`, continue along it with the nozzle
+// open, no faster than the path, or coast, perhaps round corners.
+uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  const absl::Span<const TraceMove> moves = MovesBeside(chunk, path);
+  const TracePath& traced = chunk.paths[path];
+  const Point before = chunk.StartOf(traced, traced.end_segment - 1);
+  const uint32_t coasting = CoastingMoves(chunk, path, {before, chunk.EndOf(traced), path});
+  uint32_t m = 0;
+  for (; m < moves.size(); ++m) {
+    const TraceMove& move = moves[m];
+    const bool slow = move.kind == MoveKind::kTravel && move.open && move.feed <= traced.feed;
+    if (!slow || move.z_to_mm != move.z_from_mm) break;
+    if (m >= coasting && !LeadsAlong(move, moves.first(m), pieces, BesideMm(move))) break;
+  }
+  return m;
+}
+
+// The same at any speed, opened or not, of which the first `tail` are known.
+uint32_t AlongMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
+                    uint32_t tail) {
+  const absl::Span<const TraceMove> moves = MovesBeside(chunk, path);
+  uint32_t m = tail;
+  for (; m < moves.size(); ++m) {
+    const TraceMove& move = moves[m];
+    if (!move.sideways()) continue;
+    if (move.kind != MoveKind::kTravel || move.z_to_mm != move.z_from_mm) break;
+    if (!LeadsAlong(move, moves.first(m), pieces, kOnPathMm)) break;
+  }
+  return m;
 }
 
 // The greatest of `1.5,2,1.5`; 0 if there is no number.
@@ -262,8 +311,9 @@ void LayerPair::FindTails() {
     side->tails.assign(side->end_path - first + 1, 0);
     side->along = side->tails;
     const auto note = [side, first](uint32_t path, absl::Span<const Piece> pieces) {
-      side->tails[path + 1 - first] = TailMoves(side->chunk, path, pieces);
-      side->along[path + 1 - first] = TailMoves(side->chunk, path, pieces, /*any_speed=*/true);
+      const uint32_t tail = TailMoves(side->chunk, path, pieces);
+      side->tails[path + 1 - first] = tail;
+      side->along[path + 1 - first] = AlongMoves(side->chunk, path, pieces, tail);
     };
     // The travel to the layer begins with moves along the last path of the layer before.
     if (first > 0) {
@@ -284,34 +334,6 @@ uint32_t LayerPair::OriginalLine(uint32_t path) const {
   const auto behind = std::ranges::upper_bound(visits_, path, {}, &Visit::first_path);
   assert(behind != visits_.begin());
   return was_.LineOf((behind - 1)->path);
-}
-
-uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
-                              absl::Span<const Piece> pieces, bool any_speed) {
-  const absl::Span<const TraceMove> moves = chunk.MovesOf(path + 1);
-  const TracePath& traced = chunk.paths[path];
-  const Point before = chunk.StartOf(traced, traced.end_segment - 1);
-  const Piece last{before, chunk.EndOf(traced), path};
-  // Or where the tail went already.
-  const auto lies_on = [&](Point p, uint32_t end) {
-    const double mm = any_speed ? kOnPathMm : BesideMm(moves[end]);
-    for (const TraceMove& move : moves.first(end)) {
-      if (DistanceToPiece(p, move.from, move.to) <= mm) return true;
-    }
-    return LiesWithin(mm, p, pieces);
-  };
-  const uint32_t coasting = any_speed ? 0 : CoastingMoves(chunk, path, last);
-  uint32_t m = any_speed ? TailMoves(chunk, path, pieces) : 0;
-  for (; m < moves.size(); ++m) {
-    const TraceMove& move = moves[m];
-    if (any_speed && !move.sideways()) continue;
-    if (move.kind != MoveKind::kTravel || !(move.open || any_speed)) break;
-    if (move.feed > traced.feed && !any_speed) break;
-    if (move.z_to_mm != move.z_from_mm) break;
-    const bool along = lies_on(move.to, m) && lies_on(move.middle, m);
-    if (m >= coasting && !along) break;
-  }
-  return m;
 }
 
 LayerPair::Travel LayerPair::TravelOf(const TraceChunk& chunk, uint32_t link, bool open,

@@ -40,8 +40,10 @@ struct LayerSide {
   std::vector<uint32_t> along = {};
 
   // How many moves at the beginning of a link, or of the one behind the layer, continue along the
-  // path before and are no travel (LayerPair::TailMoves); at any speed, too.
+  // path before, without filament and no faster than it was printed, and are no travel.
   uint32_t TailOf(uint32_t link) const { return tails[link - first_path]; }
+
+  // The same where they may be faster, lifted, and come after a retraction.
   uint32_t AlongOf(uint32_t link) const { return along[link - first_path]; }
   absl::Span<const TraceMove> MovesAlong(uint32_t link) const {
     return chunk.MovesOf(link).first(AlongOf(link));
@@ -135,12 +137,6 @@ class LayerPair {
   // The line of the original with which the path begins that path `path` of the other file is a
   // part of.
   uint32_t OriginalLine(uint32_t path) const;
-
-  // The moves at the beginning of link `path` + 1 that continue along the path, without filament
-  // and no faster than it was printed. With `any_speed` they may be faster, lifted, and come after
-  // a retraction. `pieces` belong to the path.
-  static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
-                            bool any_speed = false);
 
   // True if the travel of `link` without a retraction (`open`), or with one, crosses outer walls.
   // Its ends, which may lie on walls, do not count.

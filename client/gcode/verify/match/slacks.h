@@ -24,6 +24,9 @@ inline constexpr double kSameSpotMm = 1e-5;
 // What lies so near to a path lies on it.
 inline constexpr double kOnPathMm = 0.05;
 
+// Of the moves behind a path so many may go along it: more than slicers write.
+inline constexpr size_t kMostAlong = 1000;
+
 // Shorter moves come from rounding; shorter travel tells nothing of what travel does.
 inline constexpr double kLeastMoveMm = 0.05;
 inline constexpr double kLeastTravelMm = 0.5;

@@ -24,12 +24,11 @@ struct Tail {
   bool known = true;
 };
 
-// Up to `most_mm` of it.
-Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
-            absl::Span<const Piece> pieces, double most_mm = HUGE_VAL) {
+// Of the path before `link`, up to `most_mm` of it.
+Tail TailBefore(const LayerPair& layer, const LayerSide& side, uint32_t link,
+                double most_mm = HUGE_VAL) {
   Tail tail;
-  const uint32_t n = LayerPair::TailMoves(chunk, path, pieces);
-  for (const TraceMove& move : chunk.MovesOf(path + 1).first(n)) {
+  for (const TraceMove& move : side.chunk.MovesOf(link).first(side.TailOf(link))) {
     if (tail.length_mm + move.length_mm() > most_mm) break;
     tail.length_mm += move.length_mm();
     tail.end = move.to;
@@ -107,13 +106,15 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     const TracePath& path = was.paths[visit.path];
     if (visit.segments != path.size()) continue;
     CheckPoke(layer, visit, findings);
-    const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
     if (LeadsOn(was, visit.path)) continue;
-    const Tail had = TailOf(layer, was, visit.path, pieces);
+    const Tail had = TailBefore(layer, layer.Side(true), visit.path + 1);
     const double slack = std::max(kLengthSlackMm, 0.02 * had.length_mm);
     const bool leads_on = LeadsOn(is, visit.last_path);
-    const Tail has =
-        TailOf(layer, is, visit.last_path, pieces, leads_on ? had.length_mm + slack : HUGE_VAL);
+    Tail has;
+    if (layer.EndsPath(visit)) {
+      has = TailBefore(layer, layer.Side(false), visit.last_path + 1,
+                       leads_on ? had.length_mm + slack : HUGE_VAL);
+    }
     const uint32_t end_line = is.segments[visit.last_segment].line;
     const auto report = [&](uint32_t original, uint32_t optimised, std::string what) {
       findings.breaks.push_back({VerifyRule::kPathEnds, original, optimised, std::move(what)});

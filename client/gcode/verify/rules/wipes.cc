@@ -114,12 +114,13 @@ Wipe WipeBehind(const LayerPair& layer, const LayerSide& side, uint32_t path,
     const TraceMove* before = std::exchange(last, each);
     const bool returns = wipe.at.line == 0 && DepartureOf(side.chunk, path + 1) != nullptr;
     if (wipe.at.line == 0) wipe.at.line = move.line;
+    ++wipe.moves;
     wipe.length_mm += static_cast<float>(move.length_mm());
     const auto pulled = static_cast<float>(static_cast<double>(-move.filament) * kMicro);
     wipe.pulled_mm += pulled;
     const auto length = static_cast<float>(move.length_mm());
     if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
-    if (!measure) continue;
+    if (!measure || wipe.moves > kMostAlong) continue;
     wipe.turns_back |= before != nullptr && TurnsBackBetween(*before, move, pieces);
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
     // A chord of the path has both its ends on it, but where it returns from a short move away.
@@ -240,6 +241,11 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
     }
     if (wipe.at.line == 0 || wipe.known) continue;
     wipe.path_line = was.LineOf(visit.path);
+    if (wipe.moves > kMostAlong) {
+      findings.breaks.push_back(
+          {VerifyRule::kWipes, wipe.path_line, wipe.at.line,
+           absl::StrFormat("a new wipe of more than %d moves is not followed", kMostAlong)});
+    }
     findings.is.wipes.push_back(wipe);
   }
 }

@@ -35,15 +35,6 @@ void ObserveFirstTravel(const LayerPair& layer, absl::Span<const TraceMove> move
   }
 }
 
-// How many moves at the beginning of `link`, which ends at another height, go on along the path.
-uint32_t TailOf(const TraceChunk& chunk, uint32_t link) {
-  const TraceMove& first = chunk.MovesOf(link).front();
-  if (link == 0 || RiseOf(first.z_from_mm, chunk.paths[link].z_mm) == TravelRise::kLevel) return 0;
-  std::vector<Piece> pieces;
-  AppendPieces(chunk, link - 1, pieces);
-  return LayerPair::TailMoves(chunk, link - 1, pieces);
-}
-
 // How the head goes up and down on the travel of one link.
 void Observe(const LayerPair& layer, const LayerSide& side, uint32_t link, Observations& seen) {
   const absl::Span<const TraceMove> moves = side.chunk.MovesOf(link);
@@ -53,9 +44,11 @@ void Observe(const LayerPair& layer, const LayerSide& side, uint32_t link, Obser
   const double to = side.chunk.paths[link].z_mm;
   TravelExtreme lowest{0, {0, layer.index()}, RiseOf(from, to)};
   TravelExtreme descent = lowest;
-  // A new departure, or tail, is as high as the path before; those of the original are examples.
+  // A new departure, or tail to another height, is as high as the path before; those of the
+  // original are examples.
   const TraceMove* departure = side.original ? nullptr : DepartureOf(side.chunk, link);
-  const uint32_t tail = side.original ? 0 : TailOf(side.chunk, link);
+  const bool skips_tail = !side.original && lowest.rise != TravelRise::kLevel;
+  const uint32_t tail = skips_tail ? side.TailOf(link) : 0;
   for (const TraceMove& move : moves.subspan(tail)) {
     if (!layer.Counts(side, move) || &move == departure) continue;
     if (move.kind != MoveKind::kTravel || move.length_mm() < kLeastMoveMm) continue;

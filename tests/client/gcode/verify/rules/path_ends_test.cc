@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "tests/client/gcode/verify/small_prints.h"
+#include "tests/support/growth.h"
 
 namespace traverse::gcode {
 namespace {
@@ -38,6 +39,24 @@ TEST(VerifyPathEnds, AreAsLongAsTheyWere) {
   const std::string again = kHead + two + kOne + kOther;
   const std::string on = kOne + "G1 X9.1 Y0\n" + kOther;
   EXPECT_EQ(Broken(again, kHead + two + on), "path_ends");
+}
+
+// A long path, and as many moves that go back along it, slowly or as fast as travel.
+TEST(VerifyPathEnds, AreComparedWithLongPathsInLinearTime) {
+  for (const char* const feed : {"", " F9000"}) {
+    const auto check = [feed](int lines) {
+      std::string there = Line("Internal infill", "X0 Y0", "X1 Y0");
+      std::string back;
+      for (int i = 1; i <= lines; ++i) {
+        const std::string at = absl::StrFormat("G1 X%d Y%.3f", i * 37 % 100, i * 200.0 / lines);
+        absl::StrAppend(&there, at, " E.3\n");
+        back.insert(0, absl::StrCat(at, feed, "\n"));
+      }
+      const std::string print = kHead + there + back + kOther;
+      EXPECT_EQ(Broken(print, print), "");
+    };
+    EXPECT_LT(traverse::testing::GrowthOfFour(8000, check), traverse::testing::kSlowGrowth) << feed;
+  }
 }
 
 // A loop that begins elsewhere goes on no farther than its gap.

@@ -6,7 +6,9 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "tests/client/gcode/verify/small_prints.h"
+#include "tests/support/growth.h"
 
 namespace traverse::gcode {
 namespace {
@@ -21,6 +23,37 @@ TEST(VerifyWipes, LieOnTheirPath) {
   EXPECT_EQ(Broken(head + two, head + turned), "");
   const std::string beside = Wiped("X9 Y5", "X0 Y5", "X7 Y5.2") + Wiped("X9 Y0", "X0 Y0", "X2 Y0");
   EXPECT_EQ(Broken(head + two, head + beside), "wipes");
+}
+
+// A path of `lines` lines, and a wipe of `moves` moves of which the last leads `aside` mm aside.
+std::string WipedLong(int lines, int moves, double aside) {
+  std::string print = Line("Internal infill", "X0 Y0", "X1 Y0");
+  for (int i = 1; i <= lines; ++i) {
+    absl::StrAppendFormat(&print, "G1 X1 Y%.5f E.3\n", i * 50.0 / lines);
+  }
+  print += ";WIPE_START\n";
+  for (int i = 1; i <= moves; ++i) {
+    absl::StrAppendFormat(&print, "G1 X%g Y%.5f E-.0002 F7200\n", i == moves ? 1 + aside : 1,
+                          50 - i * 50.0 / moves);
+  }
+  return print + ";WIPE_END\n";
+}
+
+TEST(VerifyWipes, AreFollowedAsFarAsSlicersLeadThem) {
+  const auto file = [](const std::string& wiped) { return kHead + wiped + kOne; };
+  EXPECT_EQ(Broken(file(WipedLong(9, 1000, 0)), file(WipedLong(9, 1000, .01))), "");
+  EXPECT_THAT(FirstMessage(file(WipedLong(9, 1000, 0)), file(WipedLong(9, 1000, .2))),
+              HasSubstr("leads 0.20 mm away"));
+  EXPECT_THAT(FirstMessage(file(WipedLong(9, 1001, 0)), file(WipedLong(9, 1001, .2))),
+              HasSubstr("more than 1000 moves"));
+}
+
+TEST(VerifyWipes, AreComparedWithLongPathsInLinearTime) {
+  const auto check = [](int lines) {
+    const std::string print = kHead + WipedLong(lines, lines, 0) + kOne;
+    EXPECT_EQ(Broken(print, print), "");
+  };
+  EXPECT_LT(traverse::testing::GrowthOfFour(3000, check), traverse::testing::kSlowGrowth);
 }
 
 TEST(VerifyWipes, AreNotLost) {
