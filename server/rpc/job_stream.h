@@ -149,10 +149,10 @@ class JobStream : public JobPort {
   // For the message being read.
   RequestReader reader_;
   bool opened_ = false;
-  FaultList faults_;  // faults found in it so far
+  FaultList faults_;                    // faults found in it so far
   std::vector<LabelledLayer> carried_;  // read, with the last one without a fault, but not added
   int64_t message_bytes_ = 0;           // held for it
-  int64_t admitted_points_ = 0;  // counted by Admit, but not yet brought
+  int64_t admitted_points_ = 0;         // counted by Admit, but not yet brought
 
   // Set while messages are read; then read by the engine's calls and by End.
   JobSetup setup_;

@@ -14,8 +14,7 @@ namespace {
 constexpr double kToleranceMm = 0.02;
 
 // [segment of the block] the points between its ends; empty if no segment has any.
-std::vector<std::vector<Point>> PointsOnArcs(const GcodeFile& file,
-                                                    const gcode::Block& block) {
+std::vector<std::vector<Point>> PointsOnArcs(const GcodeFile& file, const gcode::Block& block) {
   const double unit = file.modes[block.mode].UnitMm();
   std::vector<std::vector<Point>> on_arcs;
   bool any = false;

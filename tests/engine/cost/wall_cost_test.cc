@@ -114,9 +114,9 @@ TEST(WallCost, RetractionsThatAreMadeInAnyCaseAreNothingToSave) {
 
 TEST(WallCost, MovesThatAreKnownCostWhatIsKnownInEitherDirection) {
   LayerWalls walls = OneWall();
-  const Plan plan = AnyOrderPlan({MakeOpenPath({0, 0}, {0, 5}), MakeOpenPath({10, 0}, {10, 5}),
-                                  MakeContour({{-10, 0}, {-10, 5}, {-5, 5}}),
-                                  MakeOpenPath({50, 50}, {50, 55})});
+  const Plan plan =
+      AnyOrderPlan({MakeOpenPath({0, 0}, {0, 5}), MakeOpenPath({10, 0}, {10, 5}),
+                    MakeContour({{-10, 0}, {-10, 5}, {-5, 5}}), MakeOpenPath({50, 50}, {50, 55})});
   walls.known = {{0, 1, 0.75}, {2, 0, 0.3, true, true}, {1, 2, 0.01}, {0, 1, 9}};
   const WallCost cost(walls, plan, PrinterCost());
 

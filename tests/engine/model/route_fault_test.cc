@@ -62,7 +62,9 @@ TEST(RouteFault, IsTheFirstVisitAfterWhichNoRouteGoesOn) {
 
 // Anything that a caller may send, beside a legal route.
 Route Damaged(Route route, Rng& rng) {
-  const auto at = [&] { return static_cast<size_t>(rng.Between(0, static_cast<int>(route.size()) - 1)); };
+  const auto at = [&] {
+    return static_cast<size_t>(rng.Between(0, static_cast<int>(route.size()) - 1));
+  };
   for (int damage = static_cast<int>(rng.Below(3)); damage > 0 && !route.empty(); --damage) {
     switch (rng.Below(6)) {
       case 0:
