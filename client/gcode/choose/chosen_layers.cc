@@ -26,7 +26,7 @@ class ChosenWriter {
     std::vector<PartStart> starts;  // [layer] of its paths
     std::vector<Decimal> ends;      // [layer] the register behind them, as foreseen
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      const LayerChoice& choice = Chosen(layer);
+      const LayerChoice& choice = columns_[layer].Chosen();
       LayerText& text = chosen.texts[layer];
       starts.push_back(WriteTravelTo(layer, chosen.behind, text.travel));
       chosen.behind = choice.behind;
@@ -62,13 +62,9 @@ class ChosenWriter {
     }
   }
 
-  const LayerChoice& Chosen(size_t layer) const {
-    return columns_[layer].choices[columns_[layer].chosen];
-  }
-
   // The paths written for the choice may stand behind `start`.
   bool Fits(size_t layer, const PartStart& start) const {
-    return start.machine.RelativeE() || start.machine.e == Chosen(layer).start.machine.e;
+    return start.machine.RelativeE() || start.machine.e == columns_[layer].Chosen().start.machine.e;
   }
 
   // `at` is the machine behind the layer before; of no meaning for the first one.
@@ -77,18 +73,18 @@ class ChosenWriter {
       const Block& first = file_.blocks.front();
       return {StateAt(file_, first), file_.states[first.state_in]};
     }
-    return columns_[layer].writer->WriteTravel(Chosen(layer - 1).order.back(),
-                                               Chosen(layer).order.front(), at, text);
+    return columns_[layer].writer->WriteTravel(columns_[layer - 1].Chosen().order.back(),
+                                               columns_[layer].Chosen().order.front(), at, text);
   }
 
   PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
-    const LayerChoice& choice = Chosen(layer);
+    const LayerChoice& choice = columns_[layer].Chosen();
     return choice.writer->WritePaths(choice.order, start, text, nullptr, choice.as_sliced);
   }
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {
     const LayerColumn& column = columns_[layer];
-    chosen.orders.push_back(column.chosen == 0 ? LayerOrder() : Chosen(layer).order);
+    chosen.orders.push_back(column.chosen == 0 ? LayerOrder() : column.Chosen().order);
     const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
     chosen.given.push_back(column.totals.Whole(0, 0));
     chosen.totals.push_back(column.totals.Whole(before, column.chosen));
@@ -98,7 +94,7 @@ class ChosenWriter {
     Forecast& forecast = chosen.forecast;
     forecast.given_seconds += given;
     forecast.seconds +=
-        column.chosen == 0 ? given : ForecastPaths(*Chosen(layer).writer, Chosen(layer).order);
+        column.chosen == 0 ? given : ForecastPaths(*column.Chosen().writer, column.Chosen().order);
     if (layer == 0) return;
     forecast.given_seconds += column.totals.Travel(0, 0).seconds;
     forecast.seconds += column.totals.Travel(before, column.chosen).seconds;

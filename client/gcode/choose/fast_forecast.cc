@@ -39,7 +39,7 @@ std::vector<size_t> TypicalLayers(const std::vector<LayerColumn>& columns) {
 // the file's own, as `writer` has them.
 double FastSeconds(const LayerWriter& writer, const LayerColumn& column, const MergeRules& rules) {
   // Where whole objects have changed places, the file's own order begins it.
-  const LayerOrder& chosen = column.choices[column.chosen].order;
+  const LayerOrder& chosen = column.Chosen().order;
   const std::vector<uint32_t> places = writer.PlacesOf(chosen);
   const bool moved = !std::is_sorted(places.begin(), places.end());
   KnownTravels travels(writer);
@@ -80,7 +80,7 @@ double SavedElsewhere(const std::vector<LayerColumn>& columns) {
   double saved = 0;
   for (const size_t layer : {size_t{0}, columns.size() - 1}) {
     const LayerColumn& column = columns[layer];
-    const LayerChoice& chosen = column.choices[column.chosen];
+    const LayerChoice& chosen = column.Chosen();
     if (column.chosen == 0) continue;
     saved += ForecastPaths(*column.writer, column.given_order()) -
              ForecastPaths(*chosen.writer, chosen.order);

@@ -72,7 +72,7 @@ bool LayerChooser::RuleOutLink(size_t layer, size_t line) {
   LayerColumn& column = columns_[layer];
   if (column.chosen == 0) return false;
   column.totals.no_choice[column.chosen] = true;
-  column.refusals.RefuseLink(Chosen(layer).order, PlaceOfLine(column, line));
+  column.refusals.RefuseLink(column.Chosen().order, PlaceOfLine(column, line));
   return true;
 }
 
@@ -80,7 +80,7 @@ bool LayerChooser::RuleOutOrder(size_t layer, size_t line, size_t before) {
   LayerColumn& column = columns_[layer];
   if (column.chosen == 0) return false;
   const bool refused =
-      column.refusals.RefuseOrder(Chosen(layer).order, file_.layers[layer].first_block,
+      column.refusals.RefuseOrder(column.Chosen().order, file_.layers[layer].first_block,
                                   PlaceOfLine(column, line), PlaceOfLine(column, before));
   if (refused) column.totals.no_choice[column.chosen] = true;
   return refused;
@@ -88,7 +88,7 @@ bool LayerChooser::RuleOutOrder(size_t layer, size_t line, size_t before) {
 
 bool LayerChooser::RuleOutPath(size_t layer, size_t line) {
   LayerColumn& column = columns_[layer];
-  const LayerOrder& order = Chosen(layer).order;
+  const LayerOrder& order = column.Chosen().order;
   const size_t place = column.chosen == 0 ? order.size() : PlaceOfLine(column, line);
   return place < order.size() && column.refusals.RefusePlaceOf(order[place]);
 }
@@ -98,7 +98,7 @@ bool LayerChooser::RuleOutTravel(size_t layer) {
   LayerColumn& column = columns_[layer];
   LayerColumn& before = columns_[layer - 1];
   if (before.chosen == 0 && column.chosen == 0) return false;
-  const LinkEnds link{Chosen(layer - 1).order.back(), Chosen(layer).order.front()};
+  const LinkEnds link{before.Chosen().order.back(), column.Chosen().order.front()};
   const bool own = link == LinkEnds{before.given_order().back(), column.given_order().front()};
   column.refusals.RefuseTravel(before.chosen, column.chosen, own ? nullptr : &link);
   column.refusals.begin = column.chosen != 0;
@@ -107,7 +107,7 @@ bool LayerChooser::RuleOutTravel(size_t layer) {
 }
 
 bool LayerChooser::RuleOutStarts(size_t layer) {
-  return columns_[layer].refusals.RefuseStarts(Chosen(layer).order);
+  return columns_[layer].refusals.RefuseStarts(columns_[layer].Chosen().order);
 }
 
 bool LayerChooser::RuleOutAll(size_t layer) {
@@ -185,7 +185,7 @@ void LayerChooser::KickChosen() {
     LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     LayerMerge merge(column.travels(), rules);
-    filler_.Add(merge.Improve(Chosen(layer).order, LayerMerge::Effort::kKick), layer, column);
+    filler_.Add(merge.Improve(column.Chosen().order, LayerMerge::Effort::kKick), layer, column);
   });
 }
 
@@ -233,7 +233,7 @@ void LayerChooser::Repair() {
 void LayerChooser::AddRepaired(size_t layer) {
   LayerColumn& column = columns_[layer];
   Refusals& refusals = column.refusals;
-  std::optional<LayerOrder> order = Chosen(layer).order;
+  std::optional<LayerOrder> order = column.Chosen().order;
   for (Placement& placement : *order) {
     if (refusals.Refuse(placement)) placement.entry = 0;
   }
@@ -256,7 +256,7 @@ void LayerChooser::AddSparing(size_t layer) {
   LayerColumn& column = columns_[layer];
   const MergeRules rules = RulesOf(layer);
   if (rules.as_many_retractions) return;
-  const auto orders = LayerMerge(column.travels(), rules).Spare(Chosen(layer).order);
+  const auto orders = LayerMerge(column.travels(), rules).Spare(column.Chosen().order);
   for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
 }
 

@@ -97,10 +97,6 @@ class LayerChooser {
   void AddTurned(size_t layer, const IslandTurns& turns, size_t turn);
   ChosenLayers Write() const;
 
-  const LayerChoice& Chosen(size_t layer) const {
-    return columns_[layer].choices[columns_[layer].chosen];
-  }
-
   const GcodeFile& file_;
   const FileOrder& found_;
   const ChoiceOptions options_;

@@ -50,7 +50,7 @@ double ForecastPaths(const LayerWriter& writer, const LayerOrder& order, Hiding 
 size_t PlaceOfLine(LayerColumn& column, size_t line) {
   std::vector<size_t>& ends = column.ends;
   if (ends.empty()) {
-    const LayerChoice& choice = column.choices[column.chosen];
+    const LayerChoice& choice = column.Chosen();
     std::string text;
     choice.writer->WritePaths(choice.order, choice.start, text, &ends);
     size_t begin = 0;

@@ -48,6 +48,7 @@ struct LayerColumn {
   std::unique_ptr<KnownTravels> known_travels;  // of `writer`; null until they are asked for
 
   const LayerOrder& given_order() const { return choices[0].order; }
+  const LayerChoice& Chosen() const { return choices[chosen]; }
 
   KnownTravels& travels() {
     if (known_travels == nullptr) known_travels = std::make_unique<KnownTravels>(*writer);

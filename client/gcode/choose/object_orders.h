@@ -26,8 +26,8 @@ struct LayerObject {
   uint32_t begin = 0;
   uint32_t end = 0;
   uint32_t object = 0;  // Block::object
-  std::vector<uint32_t> behind =
-      {};  // of each region of the run that it is of, the object before it
+  // Of each region of the run that it is of, the object before it.
+  std::vector<uint32_t> behind = {};
 };
 
 // The objects of a layer that may change places.

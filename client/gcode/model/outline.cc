@@ -64,7 +64,7 @@ std::vector<Point> BentShape(const GcodeFile& file, const Block& block) {
 
 }  // namespace
 
-double LengthMm(const std::vector<Point>& points) {
+double LengthMm(absl::Span<const Point> points) {
   double length = 0;
   for (size_t k = 1; k < points.size(); ++k) length += Distance(points[k - 1], points[k]);
   return length;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/model/block_feature.h"
 #include "client/gcode/model/gcode_file.h"
 #include "engine/model/point.h"
@@ -37,7 +38,7 @@ struct Outline {
 };
 
 // Along lines between the points.
-double LengthMm(const std::vector<Point>& points);
+double LengthMm(absl::Span<const Point> points);
 
 // How far short of its start a loop with lines of this width may end: slicers clip up to 0.15
 // widths of the nozzle or of the line, and CuraEngine's coasting leaves 0.09 mm.

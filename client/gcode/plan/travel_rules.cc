@@ -6,6 +6,7 @@
 
 #include "absl/container/inlined_vector.h"
 #include "client/gcode/model/loops.h"
+#include "client/gcode/model/outline.h"
 #include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
@@ -155,12 +156,6 @@ double BesideWallsMm(const std::vector<Outline>& outlines) {
   return std::max(widest / 2 + kMoreThanHalfMm, Detours::kBesideMm);
 }
 
-double LengthOf(absl::Span<const Point> line) {
-  double length = 0;
-  for (size_t i = 1; i < line.size(); ++i) length += Distance(line[i - 1], line[i]);
-  return length;
-}
-
 }  // namespace
 
 RetractionHabit LearnRetraction(const GcodeFile& file) {
@@ -242,7 +237,7 @@ bool TravelRules::Hides(absl::Span<const Point> line, Feature feature) const {
     const bool leaves_wall = i == 1 && walls_.IsOnOne(line[0]);
     if (!habit_.hidden->Hides(layer_, line[i - 1], line[i], leaves_wall)) return false;
   }
-  return LengthOf(line) <= habit_.hidden->longest_mm();
+  return LengthMm(line) <= habit_.hidden->longest_mm();
 }
 
 std::vector<Point> TravelRules::HiddenBends(Point a, Point b, Feature feature) const {
@@ -267,7 +262,7 @@ PlannedTravel TravelRules::TravelOf(Point a, Point b, Feature feature) const {
     travel.crosses = travel.via.empty();
     line.insert(line.end() - 1, travel.via.begin(), travel.via.end());
   }
-  travel.mm = LengthOf(line);
+  travel.mm = LengthMm(line);
   if (!habit_.retracts) return travel;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   travel.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
