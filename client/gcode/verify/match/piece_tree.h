@@ -50,12 +50,15 @@ class PieceTree {
     return any;
   }
 
-  // Whether counts(piece) is true for one that crosses the line (PiecesCross).
+  // Whether counts(piece) is true for one that crosses the line (PiecesCross), or the line passes
+  // so many that it takes no more time to look: no travel of a print passes as many.
+  static constexpr uint32_t kMostPassed = 5000;
   template <typename Counts>
   bool AnyAcross(Point a, Point b, Counts counts) const {
     constexpr double kRoundingMm = 1e-6;
+    uint32_t passed = 0;
     return AnyNear(a, b, kRoundingMm, [&](const Piece& piece) {
-      return counts(piece) && PiecesCross(a, b, piece.a, piece.b);
+      return (counts(piece) && PiecesCross(a, b, piece.a, piece.b)) || ++passed == kMostPassed;
     });
   }
 

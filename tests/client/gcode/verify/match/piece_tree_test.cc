@@ -87,6 +87,19 @@ TEST(PieceTree, PassesByACrowdThatALineDoesNotMeet) {
   EXPECT_EQ(VisitedAlong(tree, {-5, 0.1}, {1005, 0.1}), 0);
 }
 
+// Along their edges, which crosses none.
+TEST(PieceTree, PassesAsManyAsAPrintHasAndNoMore) {
+  const Point a{-5, 0};
+  const Point b{20'000, 0};
+  const auto all = [](const Piece&) { return true; };
+  EXPECT_FALSE(PieceTree(RowOfSquares(500, 0.5)).AnyAcross(a, b, all));
+
+  const PieceTree row(RowOfSquares(10'000, 0.5));
+  uint32_t looked = 0;
+  EXPECT_TRUE(row.AnyAcross(a, b, [&looked](const Piece&) { return ++looked, true; }));
+  EXPECT_EQ(looked, PieceTree::kMostPassed);
+}
+
 // Whose boxes all hold the same place.
 TEST(PieceTree, FindsFewOfLongDiagonals) {
   std::vector<Piece> pieces;
