@@ -111,6 +111,7 @@ class Window:
 
     def __init__(self, connection):
         self.connection, self.left, self.streams, self.initial, self.rest = connection, 65535, {}, 65535, b""
+        self.ended = False  # a stream was ended by the peer
 
     def read(self, seconds):
         self.connection.socket.settimeout(seconds)
@@ -142,7 +143,8 @@ class Window:
                 self.connection.send(frame(SETTINGS, ACK, 0))
             elif kind == PING and not flags & ACK:
                 self.connection.send(frame(PING, ACK, 0, body))
-            elif kind in (RST_STREAM, GOAWAY):
+            self.ended |= kind == RST_STREAM or kind in (HEADERS, DATA) and flags & END_STREAM != 0
+            if kind in (RST_STREAM, GOAWAY):
                 return False
         return bool(more)
 

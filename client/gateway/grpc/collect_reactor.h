@@ -93,8 +93,10 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
         use_);
   }
 
+  // An answer, too, waits until the client lets it in.
   void End(const absl::Status& status) {
-    live_.Rests(&context_);
+    collected_ = {};
+    live_.Waits(&context_, call_.peer());
     this->Finish(call_.End(status));
   }
 

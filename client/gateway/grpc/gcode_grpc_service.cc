@@ -12,6 +12,26 @@
 namespace traverse::gateway {
 namespace {
 
+// Sends the answer to a question. It waits until the client lets it in. Deletes itself.
+class AnswerReactor : public grpc::ServerUnaryReactor {
+ public:
+  AnswerReactor(LiveCalls& live, grpc::CallbackServerContext& context, const std::string& peer,
+                const grpc::Status& status)
+      : live_(live), context_(context) {
+    live_.Waits(&context_, peer);
+    Finish(status);
+  }
+
+  void OnDone() override {
+    live_.Rests(&context_);
+    delete this;
+  }
+
+ private:
+  LiveCalls& live_;
+  grpc::CallbackServerContext& context_;
+};
+
 absl::Status TakeInspect(const v1::InspectRequest& request, const FileCall& call,
                          Collected& collected) {
   if (request.has_data()) return call.Append(request.data(), collected.first);
@@ -99,9 +119,7 @@ grpc::ServerUnaryReactor* GcodeGrpcService::GetJob(grpc::CallbackServerContext* 
     status = job.status();
     if (job.ok()) *response->mutable_job() = (*job)->Now();
   }
-  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-  reactor->Finish(call.End(status));
-  return reactor;
+  return new AnswerReactor(live_, *context, call.peer(), call.End(status));
 }
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* GcodeGrpcService::WatchJob(
@@ -120,9 +138,7 @@ grpc::ServerUnaryReactor* GcodeGrpcService::CancelJob(grpc::CallbackServerContex
   FileCall call(core_, *context, "CancelJob", Brings::kQuestion);
   absl::Status status = call.status();
   if (status.ok()) status = core_.jobs->Cancel(request->id(), call.caller());
-  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-  reactor->Finish(call.End(status));
-  return reactor;
+  return new AnswerReactor(live_, *context, call.peer(), call.End(status));
 }
 
 }  // namespace traverse::gateway

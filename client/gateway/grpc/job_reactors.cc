@@ -116,8 +116,10 @@ absl::Status CreateJobReactor::Create() {
   return job.status();
 }
 
+// An answer, too, waits until the client lets it in.
 void CreateJobReactor::End(const absl::Status& status) {
-  live_.Rests(&context_);
+  upload_ = nullptr;
+  live_.Waits(&context_, call_.peer());
   Finish(call_.End(status));
 }
 

@@ -15,7 +15,7 @@ sys.path.append(os.path.dirname(os.path.abspath(__file__)))
 from gateway_process import ENDLESS, TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
 
 sys.path.append(os.path.join(TESTS, "chaos"))
-from http2_client import GCODE_SERVICE, Connection, message
+from http2_client import GCODE_SERVICE, Connection, Window, field, message
 
 PROTO = os.path.join(os.path.dirname(TESTS), "proto")
 PART = lines_of_infill(3)
@@ -261,6 +261,25 @@ class Calls(OnGateway):
         self.await_metric(refused, before + 1)
         connection.close()
         self.await_metric("traverse_gateway_requests_in_flight", 0)
+
+    def test_an_answer_that_is_not_let_in_is_given_up(self):
+        part = message(field(2, PART))
+        name = message(field(1, json.loads(self.gateway.ask("POST", "/v1/jobs", PART)[2])["id"].encode()))
+        for method, request in [("Inspect", part), ("Verify", message(field(1, PART)) + part),
+                                ("CreateJob", message(field(1, b"")) + part), ("GetJob", name), ("CancelJob", name)]:
+            connection = Connection(self.gateway.grpc_port, window=0)
+            stream = connection.call(GCODE_SERVICE + method)
+            connection.data(stream, request, end=True)
+            self.assertTrue(self.is_ended(connection), method)
+            connection.close()
+
+    def is_ended(self, connection):
+        """Whether the gateway ends the one call of it, by trailers or by a reset, long after --idle_timeout at the latest."""
+        window, end = Window(connection), time.time() + 30
+        while time.time() < end and window.read(1):
+            if window.ended:
+                return True
+        return window.ended
 
     def test_a_client_that_stops_is_given_up(self):
         stop = threading.Event()
