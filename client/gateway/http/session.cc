@@ -103,6 +103,21 @@ void Session::OnTimer() {
   Cancel();
 }
 
+  // What has just ended by itself was not cancelled, and the next part of it may begin.
+  constexpr auto kSoon = std::chrono::milliseconds(100);
+  deadline_ = Clock::now() + kSoon;
+  Arm();
+}
+
+Awaitable<size_t> Session::ReadSome(net::mutable_buffer into, Error& error) {
+  const size_t got = co_await connection_->ReadSome(into, error);
+  if (!error && timed_out_) error = net::error::operation_aborted;
+  co_return got;
+}
+
+Awaitable<void> Session::Write(Connection::Pieces pieces, Error& error) {
+  co_await connection_->Write(std::move(pieces), error);
+  if (!error && timed_out_) error = net::error::operation_aborted;
 Awaitable<bool> Session::ServeOne() {
   HeadParser parser;
   parser.header_limit(limits_.max_head_bytes);
@@ -169,7 +184,7 @@ Awaitable<bool> Session::ReadMore(HeadParser& parser, Error& error) {
     error = http::error::buffer_overflow;
     co_return false;
   }
-  buffer_.commit(co_await connection_->ReadSome(buffer_.prepare(room), error));
+  buffer_.commit(co_await ReadSome(buffer_.prepare(room), error));
   if (error == net::error::eof) {
     error = {};
     if (parser.got_some()) {
@@ -186,7 +201,7 @@ Awaitable<std::optional<HttpResponse>> Session::ReadBody(HeadParser& parser, Bod
   Error error;
   const bool wait = beast::iequals(parser.get()[http::field::expect], "100-continue");
   if (wait && !parser.is_done() && buffer_.size() == 0) {
-    co_await connection_->Write(OnePiece("HTTP/1.1 100 Continue\r\n\r\n"), error);
+    co_await Write(OnePiece("HTTP/1.1 100 Continue\r\n\r\n"), error);
   }
   parser.eager(true);  // chunks of a few bytes together
   std::vector<char> piece(parser.is_done() ? 0 : kPiece);
@@ -208,8 +223,8 @@ Awaitable<size_t> Session::ReadPiece(HeadParser& parser, uint64_t received,
                                      std::vector<char>& piece, Error& error) {
   if (IsPlain(parser) && buffer_.size() == 0) {
     const uint64_t left = *parser.content_length() - received;
-    const size_t got = co_await connection_->ReadSome(
-        net::buffer(piece.data(), std::min<uint64_t>(piece.size(), left)), error);
+    const size_t got =
+        co_await ReadSome(net::buffer(piece.data(), std::min<uint64_t>(piece.size(), left)), error);
     if (error == net::error::eof) error = http::error::partial_message;
     co_return got;
   }
@@ -304,10 +319,9 @@ Awaitable<bool> Session::WritePiece(std::string_view piece, bool chunked) {
   Error error;
   if (chunked) {
     const std::string size = absl::StrCat(absl::Hex(piece.size()), "\r\n");
-    co_await connection_->Write({net::buffer(size), net::buffer(piece), net::buffer("\r\n", 2)},
-                                error);
+    co_await Write({net::buffer(size), net::buffer(piece), net::buffer("\r\n", 2)}, error);
   } else {
-    co_await connection_->Write(OnePiece(piece), error);
+    co_await Write(OnePiece(piece), error);
   }
   if (idle_since_) MayGiveWay();
   co_return !error;
@@ -316,7 +330,7 @@ Awaitable<bool> Session::WritePiece(std::string_view piece, bool chunked) {
 Awaitable<bool> Session::WriteText(std::string_view text) {
   SetTimer(limits_.idle_time);
   Error error;
-  co_await connection_->Write(OnePiece(text), error);
+  co_await Write(OnePiece(text), error);
   co_return !error;
 }
 
@@ -328,7 +342,7 @@ Awaitable<void> Session::Linger() {
   }
   std::vector<char> scrap(kPiece);
   SetTimer(kPatience);
-  while (!error) {
+  while (!error && !timed_out_) {
     co_await connection_->socket().async_read_some(net::buffer(scrap),
                                                    net::redirect_error(net::use_awaitable, error));
   }

@@ -66,6 +66,10 @@ class Session : public std::enable_shared_from_this<Session> {
   // Ends what waits for the client.
   void Cancel();
 
+  // Those of the connection, which also end in an error if the timer fired meanwhile.
+  Awaitable<size_t> ReadSome(boost::asio::mutable_buffer into, Error& error);
+  Awaitable<void> Write(Connection::Pieces pieces, Error& error);
+
   // Returns whether another request may come.
   Awaitable<bool> ServeOne();
   HttpDecision Decide(const HeadParser& parser);

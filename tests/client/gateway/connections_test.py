@@ -92,6 +92,15 @@ class Patience(Sockets):
             time.sleep(0.1)
         self.assertEqual(gateway.metric("traverse_gateway_spool_bytes"), 0)
 
+    def test_who_goes_on_after_a_refusal_is_cut_off(self):
+        """As fast as he can, so that hardly ever anything waits."""
+        connection = self.connect()
+        connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999999\r\n\r\n")
+        end = time.time() + 20
+        with self.assertRaises((BrokenPipeError, ConnectionResetError)):
+            while time.time() < end:
+                connection.sendall(bytes(65536))
+
     def test_a_head_that_drips_is_given_up(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\n")
