@@ -1,5 +1,6 @@
 #include "client/gateway/gateway.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -133,7 +134,7 @@ bool Gateway::Drain(absl::Duration timeout) {
   };
   while (!is_done() && absl::Now() < end) absl::SleepFor(kLook);
   const bool all_done = is_done();
-  http_->Drain(all_done ? absl::Seconds(5) : absl::Milliseconds(100));
+  http_->Drain(all_done ? std::max(absl::Seconds(5), end - absl::Now()) : absl::Milliseconds(100));
   return all_done;
 }
 

@@ -48,7 +48,9 @@ Awaitable<void> Session::Run() {
   MayGiveWay();
   SetTimer(limits_.head_time);
   Error error;
+  waits_for_head_ = true;
   identities_ = co_await connection_->Begin(error);
+  waits_for_head_ = false;
   if (error) co_return;
   bool again = true;
   while (again && !draining_) {

@@ -367,6 +367,26 @@ class Time(unittest.TestCase):
                 time.sleep(0.02)
             self.assertLess(time.time() - began, 10, path)
 
+    def test_draining_waits_for_a_slow_reader(self):
+        gateway = Gateway("--drain_timeout=60s")
+        self.addCleanup(gateway.close)
+        part = lines_of_infill(3) + b"; of no layer\n" * 700_000  # longer than what sockets hold
+        connection = socket.socket()
+        self.addCleanup(connection.close)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
+        connection.connect(("127.0.0.1", gateway.http_port))
+        connection.sendall(b"POST /v1/gcode?strategy=greedy HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(part) + part)
+        answer = connection.recv(65536)
+        gateway.process.send_signal(signal.SIGTERM)
+        for _ in range(16):
+            time.sleep(0.5)
+            answer += connection.recv(10000)
+        while piece := connection.recv(1 << 20):
+            answer += piece
+        head, body = answer.split(b"\r\n\r\n", 1)
+        self.assertIn(b"Content-Length: %d" % len(body), head)
+        self.assertEqual(gateway.process.wait(timeout=20), 0)
+
     def test_draining_ends_what_is_under_way_well(self):
         gateway = Gateway()
         self.addCleanup(gateway.close)

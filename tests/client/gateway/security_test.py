@@ -5,6 +5,8 @@ The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 import hashlib
 import http.client
 import os
+import signal
+import socket
 import ssl
 import subprocess
 import sys
@@ -87,6 +89,15 @@ class Security(unittest.TestCase):
         self.assertEqual(self.ask_tls(gateway), (200, optimised_by_command(PART)))
         with self.assertRaises((http.client.HTTPException, OSError)):
             gateway.ask("GET", "/healthz")
+
+    def test_draining_waits_for_no_handshake(self):
+        gateway = self.start("--tls_certificate=" + self.path("server.pem"), "--tls_key=" + self.path("server.key"),
+                             "--header_timeout=60s", "--drain_timeout=60s")
+        with socket.create_connection(("127.0.0.1", gateway.http_port)) as connection:
+            connection.sendall(b"\x16\x03\x01")
+            self.assertEqual(self.ask_tls(gateway), (200, optimised_by_command(PART)))  # it has come
+            gateway.process.send_signal(signal.SIGTERM)
+            self.assertEqual(gateway.process.wait(timeout=20), 0)
 
     def test_client_certificates(self):
         tls = ["--tls_certificate=" + self.path("server.pem"), "--tls_key=" + self.path("server.key"),
