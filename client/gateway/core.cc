@@ -51,21 +51,24 @@ absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const Spo
 }  // namespace
 
 void Core::Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
-                  std::vector<std::shared_ptr<const SpoolFile>> files, Task work, FileUse use) {
+                  std::vector<std::shared_ptr<const SpoolFile>> files,
+                  const gcode::WorkLimit& limit, Task work, FileUse use) {
   const bool at_once = std::all_of(files.begin(), files.end(),
                                    [](const auto& file) { return IsMeasuredAtOnce(*file); });
-  auto submit = [this, ticket, files, work = std::move(work), use] {
+  auto submit = [this, ticket, files, work = std::move(work), use, limit] {
+    if (limit.Ended()) return work(absl::OkStatus());
     const absl::StatusOr<int64_t> memory = Guarded([&] {
       return MemoryForAll(files, use, options.max_file_bytes, queue->max_memory_bytes());
     });
     if (!memory.ok()) return work(memory.status());
-    queue->Submit(ticket, *memory, [work] { work(absl::OkStatus()); });
+    queue->Submit(
+        ticket, *memory, [work] { work(absl::OkStatus()); }, limit);
   };
   if (at_once) return submit();
   // Going through files to measure them takes time, and callers must not wait for it.
   int64_t to_measure = 0;
   for (const auto& file : files) to_measure += MemoryToMeasure(*file);
-  queue->Submit(ticket, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));
+  queue->Submit(ticket, std::min(to_measure, queue->max_memory_bytes()), std::move(submit), limit);
 }
 
 std::string Core::MetricsText() {

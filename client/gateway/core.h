@@ -19,6 +19,7 @@
 #include "client/gateway/work/file_memory.h"
 #include "client/gateway/work/file_worker.h"
 #include "client/gateway/work/work_queue.h"
+#include "client/gcode/work_limit.h"
 #include "server/access/auth.h"
 #include "server/net/connections.h"
 #include "server/ops/operator_files.h"
@@ -49,11 +50,12 @@ struct Core {
 
   // Calls `work` when there are a worker and the memory that such work on `files` may take. Calls
   // it with an error if they need more than there is at all (OutOfRange), or cannot be read.
-  // `ticket` and the files live until then.
+  // `ticket` and the files live until then. When `limit` has ended `work` waits for nothing, and
+  // sees to it.
   using Task = std::function<void(const absl::Status&)>;
   void Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
-              std::vector<std::shared_ptr<const SpoolFile>> files, Task work,
-              FileUse use = FileUse::kRewrite);
+              std::vector<std::shared_ptr<const SpoolFile>> files, const gcode::WorkLimit& limit,
+              Task work, FileUse use = FileUse::kRewrite);
 
   // The text of /metrics.
   std::string MetricsText();

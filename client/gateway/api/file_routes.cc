@@ -120,10 +120,11 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
                                taken.wanted.name, taken.file->size()};
     const std::stop_source stop = StopWhenGone(*taken.reply);
     if (kind == AnswerKind::kEvents) BeginEvents(*taken.reply);
-    core.Submit(taken.ticket, {taken.file}, [&core, taken, record, kind, stop](const auto& may) {
-      RunRewrite(core, may, taken.wanted, record, kind, *taken.file, *taken.reply,
-                 stop.get_token());
-    });
+    core.Submit(taken.ticket, {taken.file}, {taken.wanted.finish_by, stop.get_token()},
+                [&core, taken, record, kind, stop](const auto& may) {
+                  RunRewrite(core, may, taken.wanted, record, kind, *taken.file, *taken.reply,
+                             stop.get_token());
+                });
   });
 }
 
@@ -134,7 +135,8 @@ HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller,
       if (!may.ok()) return taken.reply->Send(ProblemOf(may));
       SendMessage(*taken.reply, core.worker->Inspect(*taken.file, taken.wanted, stop.get_token()));
     };
-    core.Submit(taken.ticket, {taken.file}, work, FileUse::kInspect);
+    core.Submit(taken.ticket, {taken.file}, {taken.wanted.finish_by, stop.get_token()}, work,
+                FileUse::kInspect);
   });
 }
 
@@ -162,7 +164,8 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
       SendMessage(*reply, core.worker->Verify(*original, *optimised, permissions, finish_by,
                                               stop.get_token()));
     };
-    core.Submit(ticket, {original, optimised}, work, FileUse::kVerify);
+    core.Submit(ticket, {original, optimised}, {finish_by, stop.get_token()}, work,
+                FileUse::kVerify);
   };
   const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
                                .max_files = 2,

@@ -169,8 +169,8 @@ HttpDecision OptimizeRoute(const HttpRequest& request, const std::string& caller
                     .reply = reply,
                     .stop = StopWhenGone(*reply)};
     core.Submit(
-        ticket, {job.file}, [&core, job](const absl::Status& may) { Run(core, job, may); },
-        FileUse::kOptimize);
+        ticket, {job.file}, {job.finish_by, job.stop.get_token()},
+        [&core, job](const absl::Status& may) { Run(core, job, may); }, FileUse::kOptimize);
   };
   return TakeFiles(request, {.max_file_bytes = core.options.max_file_bytes, .caller = caller}, core,
                    start);
@@ -181,7 +181,9 @@ HttpDecision StrategiesRoute(const std::string& caller, Core& core) {
   if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
   return std::make_unique<NoBody>(
       [&core, ticket = std::get<TicketPtr>(std::move(entered))](const ReplyPtr& reply) {
-        core.Submit(ticket, {}, [&core, reply, stop = StopWhenGone(*reply)](const absl::Status&) {
+        const std::stop_source stop = StopWhenGone(*reply);
+        const gcode::WorkLimit limit(absl::InfiniteFuture(), stop.get_token());
+        core.Submit(ticket, {}, limit, [&core, reply, stop](const absl::Status&) {
           constexpr absl::Duration kPatience = absl::Seconds(10);
           const auto found = core.client->ListStrategies(kPatience, stop.get_token());
           reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")

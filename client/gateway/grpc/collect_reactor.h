@@ -86,7 +86,7 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
     if (collected_.second != nullptr) files.push_back(collected_.second);
     const absl::Time finish_by = call_.FinishBy();
     core_.Submit(
-        call_.ticket(), std::move(files),
+        call_.ticket(), std::move(files), {finish_by, stop_.get_token()},
         [this, finish_by](const absl::Status& may) {
           End(may.ok() ? work_(collected_, finish_by, stop_.get_token()) : may);
         },

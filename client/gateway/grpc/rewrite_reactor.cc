@@ -63,7 +63,8 @@ void RewriteReactor::Submit() {
   }
   wanted_->finish_by = call_.FinishBy();
   // From now on the task ends the call, so the call outlives it.
-  core_.Submit(call_.ticket(), {upload_}, [this](const absl::Status& may) { Work(may); });
+  core_.Submit(call_.ticket(), {upload_}, {wanted_->finish_by, stop_.get_token()},
+               [this](const absl::Status& may) { Work(may); });
 }
 
 void RewriteReactor::Work(const absl::Status& may) {

@@ -74,7 +74,8 @@ absl::StatusOr<std::shared_ptr<Job>> JobStore::Create(
     if (!added.ok()) return added.status();
     job = *std::move(added);
   }
-  core_.Submit(ticket, {upload}, [this, job](const absl::Status& may) { Run(*job, may); });
+  core_.Submit(ticket, {upload}, {job->wish().request.finish_by, job->cancelled()},
+               [this, job](const absl::Status& may) { Run(*job, may); });
   return job;
 }
 

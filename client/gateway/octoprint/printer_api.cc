@@ -216,16 +216,16 @@ void PrinterApi::Optimise(Delivery& delivery) {
   auto result = std::make_shared<std::promise<absl::StatusOr<RewrittenFile>>>();
   std::future<absl::StatusOr<RewrittenFile>> future = result->get_future();
   std::stop_source stop;
-  core_.Submit(delivery.ticket, {delivery.original},
-               [this, result, request, original = delivery.original, record = delivery.record,
-                stop](const absl::Status& may) {
+  core_.Submit(delivery.ticket, {delivery.original}, {request.finish_by, stop.get_token()},
+               [&core = core_, result, request, original = delivery.original,
+                record = delivery.record, stop](const absl::Status& may) {
                  const absl::Time began = absl::Now();
                  absl::StatusOr<RewrittenFile> made =
-                     may.ok() ? core_.worker->Rewrite(*original, request, {}, stop.get_token())
+                     may.ok() ? core.worker->Rewrite(*original, request, {}, stop.get_token())
                               : may;
                  FileRecord done = record;
                  done.seconds = absl::ToDoubleSeconds(absl::Now() - began);
-                 RecordFile(core_, done, made.status(), made.ok() ? &made->summary : nullptr);
+                 RecordFile(core, done, made.status(), made.ok() ? &made->summary : nullptr);
                  result->set_value(std::move(made));
                });
   if (future.wait_until(absl::ToChronoTime(request.finish_by)) != std::future_status::ready) {

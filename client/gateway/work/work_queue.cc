@@ -24,6 +24,9 @@ namespace {
 // workers have tasks that end late or never.
 constexpr int kSmallPart = 16;
 
+// How often to look for tasks past their limits.
+constexpr auto kLookEvery = std::chrono::milliseconds(250);
+
 }  // namespace
 
 WorkQueue::WorkQueue(const WorkLimits& limits, const TimeSource* time)
@@ -70,7 +73,7 @@ absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::s
 }
 
 void WorkQueue::Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes,
-                       std::function<void()> task) {
+                       std::function<void()> task, const gcode::WorkLimit& limit) {
   assert(memory_bytes <= limits_.max_memory_bytes);
   const std::string name = ticket->caller();
   {
@@ -83,7 +86,7 @@ void WorkQueue::Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes,
       if (weight != limits_.caller_weights.end()) caller.weight = weight->second;
       order_.Enter(caller);
     }
-    caller.waiting.push_back({std::move(ticket), memory_bytes, std::move(task)});
+    caller.waiting.push_back({std::move(ticket), memory_bytes, std::move(task), limit});
     if (!caller.waits()) order_.Wait(caller);
   }
   changed_.NotifyAll();
@@ -143,7 +146,28 @@ bool WorkQueue::MayBegin(const Caller& caller, int64_t& waits_for) const {
   return fits;
 }
 
+WorkQueue::Caller* WorkQueue::TakeEnded(Task& task) {
+  const Budget::Clock::time_point now = Budget::Clock::now();
+  if (now - looked_ < kLookEvery) return nullptr;
+  for (auto& [name, caller] : callers_) {
+    const auto ended = std::ranges::find_if(
+        caller.waiting, [](const Task& waiting) { return waiting.limit.Ended(); });
+    if (ended == caller.waiting.end()) continue;
+    task = std::move(*ended);
+    task.memory_bytes = 0;
+    caller.waiting.erase(ended);
+    if (caller.waiting.empty()) order_.Withdraw(caller);
+    ++caller.running;
+    --waiting_count_;
+    ++running_;
+    return &caller;
+  }
+  looked_ = now;
+  return nullptr;
+}
+
 WorkQueue::Caller* WorkQueue::TakeNext(Task& task) {
+  if (Caller* const caller = TakeEnded(task); caller != nullptr) return caller;
   int64_t waits_for = 0;
   FairOrder::Member* const next = order_.TakeFirst([&](FairOrder::Member& member) {
     mutex_.AssertHeld();
@@ -176,7 +200,13 @@ void WorkQueue::Work() {
   while (true) {
     Task task;
     Caller* caller = nullptr;
-    while (!stopping_ && (caller = TakeNext(task)) == nullptr) changed_.Wait(mutex_);
+    while (!stopping_ && (caller = TakeNext(task)) == nullptr) {
+      if (waiting_count_ == 0) {
+        changed_.Wait(mutex_);
+      } else {
+        changed_.WaitUntil(mutex_, Budget::Clock::now() + kLookEvery);
+      }
+    }
     if (caller == nullptr) return;
     lock.Unlock();
     const Budget::Clock::time_point began = Budget::Now(time_);

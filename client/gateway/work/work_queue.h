@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/gcode/work_limit.h"
 #include "engine/base/budget.h"
 #include "engine/base/mutex.h"
 #include "server/jobs/fair_order.h"
@@ -66,8 +67,10 @@ class WorkQueue {
 
   // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns. A large
   // task whose turn it is waits for its memory, and others behind it; but not small ones of callers
-  // of whom nothing is under way. REQUIRES: no more than max_memory_bytes().
-  void Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes, std::function<void()> task);
+  // of whom nothing is under way; and one whose `limit` has ended, and which will see that, waits
+  // for nothing. REQUIRES: no more than max_memory_bytes().
+  void Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes, std::function<void()> task,
+              const gcode::WorkLimit& limit = {});
 
   // While memory is short, a task begins only if none is under way, or as one of those small ones.
   void SetMemoryShort(bool is_short);
@@ -87,6 +90,7 @@ class WorkQueue {
     std::shared_ptr<Ticket> ticket;
     int64_t memory_bytes;
     std::function<void()> run;
+    gcode::WorkLimit limit;
     bool passes = false;  // others whose turn it is
   };
 
@@ -101,6 +105,7 @@ class WorkQueue {
 
   // The next task that may run now, and whose it is; null if there is none.
   Caller* TakeNext(Task& task) TRAVERSE_REQUIRES(mutex_);
+  Caller* TakeEnded(Task& task) TRAVERSE_REQUIRES(mutex_);  // the same, of those past their limit
   bool MayBegin(const Caller& caller, int64_t& waits_for) const TRAVERSE_REQUIRES(mutex_);
   void Done(const std::string& name, Caller& caller, double seconds) TRAVERSE_REQUIRES(mutex_);
 
@@ -116,6 +121,7 @@ class WorkQueue {
   int running_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   bool passing_ TRAVERSE_GUARDED_BY(mutex_) = false;  // a task that passed others is under way
   int64_t memory_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  Budget::Clock::time_point looked_ TRAVERSE_GUARDED_BY(mutex_);  // for ended tasks
   bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;

@@ -200,6 +200,17 @@ class Jobs(unittest.TestCase):
     def test_results_expire(self):
         gateway = self.start("--job_ttl=1s")
         job = self.create(gateway)
+    def test_cancelled_jobs_wait_for_no_worker(self):
+        gateway = self.start("--workers=1", "--max_requests_per_caller=4")
+        self.create(gateway, endless_infill(), ENDLESS)
+        self.assertTrue(until(lambda: gateway.metric("traverse_gateway_workers_busy") == 1))
+        waiting = [self.create(gateway) for _ in range(3)]
+        self.refused(429, "of this caller", gateway.ask("POST", "/v1/jobs", PART))
+        for job in waiting:
+            self.assertEqual(gateway.ask("DELETE", self.path(job))[0], 204)
+        self.assertTrue(until(lambda: gateway.metric("traverse_gateway_requests_in_flight") == 1))
+        self.create(gateway)
+
         self.assertTrue(until(lambda: gateway.ask("GET", self.path(job))[0] == 410))
         self.refused(410, "expired", gateway.ask("GET", self.path(job, "/file")))
         self.assertTrue(until(lambda: gateway.metric("traverse_gateway_spool_bytes") == 0))

@@ -8,6 +8,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -114,6 +115,23 @@ TEST(WorkQueue, OneWorkerMoreIsForCallersOfWhomNothingIsUnderWay) {
   EXPECT_EQ(queue.waiting(), 1);
   one.End();
   two.End();
+}
+
+// Nobody waits for it any more, and its place is another one's.
+TEST(WorkQueue, WhatHasEndedWaitsForNothing) {
+  WorkQueue queue({.workers = 1, .max_memory_bytes = 100});
+  Held one(queue, "a", 100);
+  std::stop_source left;
+  std::promise<void> done;
+  queue.Submit(*queue.Enter("a"), 100, [] {});
+  queue.Submit(*queue.Enter("a"), 100, [&] { done.set_value(); },
+               {absl::InfiniteFuture(), left.get_token()});
+
+  left.request_stop();
+
+  done.get_future().wait();
+  EXPECT_EQ(queue.waiting(), 1);
+  one.End();
 }
 
 // A search may last for minutes.
