@@ -219,7 +219,10 @@ absl::Status ReadJobReactor::Open(const Core& core, const v1::ReadJobRequest& re
 
 void ReadJobReactor::Next() {
   absl::Status fault;
-  if (!ReadPiece(file_.get(), sent_, *response_.mutable_data(), fault)) return End(fault);
+  if (!ReadPiece(file_.get(), sent_, *response_.mutable_data(), fault)) {
+    if (fault.ok()) file_->NoteSentToEnd();
+    return End(fault);
+  }
   live_.Waits(&context_, call_.peer());
   StartWrite(&response_);
 }

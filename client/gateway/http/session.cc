@@ -103,8 +103,6 @@ void Session::OnTimer() {
   if (Clock::now() < deadline_) return Arm();
   timed_out_ = true;
   Cancel();
-}
-
   // What has just ended by itself was not cancelled, and the next part of it may begin.
   constexpr auto kSoon = std::chrono::milliseconds(100);
   deadline_ = Clock::now() + kSoon;
@@ -120,6 +118,8 @@ Awaitable<size_t> Session::ReadSome(net::mutable_buffer into, Error& error) {
 Awaitable<void> Session::Write(Connection::Pieces pieces, Error& error) {
   co_await connection_->Write(std::move(pieces), error);
   if (!error && timed_out_) error = net::error::operation_aborted;
+}
+
 Awaitable<bool> Session::ServeOne() {
   HeadParser parser;
   parser.header_limit(limits_.max_head_bytes);
@@ -314,6 +314,7 @@ Awaitable<bool> Session::WriteBody(const HttpBody& body, bool chunked) {
     if (!co_await WritePiece({piece.data(), *got}, chunked)) co_return false;
     at += *got;
   }
+  file->NoteSentToEnd();
   co_return true;
 }
 

@@ -145,7 +145,7 @@ bool Job::fetched() const {
   MutexLock lock(mutex_);
   if (now_.state() == v1::Job::STATE_FAILED) return end_told_;
   // Nobody is reading it now.
-  return made_.ok() && made_->file->read_to_end() && made_->file.use_count() == 1;
+  return made_.ok() && made_->file->sent_to_end() && made_->file.use_count() == 1;
 }
 
 bool Job::may_be_tried_again() const {

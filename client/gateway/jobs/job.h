@@ -79,7 +79,7 @@ class Job {
   bool ended() const;
   absl::Time expires() const;  // InfiniteFuture while it is under way
 
-  // Whether its caller has it all: the new file has been read to its end, or the fault was told.
+  // Whether its caller has it all: the new file has been sent to its end, or the fault was told.
   bool fetched() const;
 
   // Whether it failed for a reason that may pass.

@@ -63,7 +63,6 @@ absl::StatusOr<size_t> SpoolFile::ReadAt(uint64_t offset, char* out, size_t size
     if (got == 0) break;
     done += static_cast<size_t>(got);
   }
-  if (offset + done >= size_) read_to_end_ = true;
   return done;
 }
 

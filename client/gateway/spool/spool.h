@@ -38,8 +38,9 @@ class SpoolFile {
   // Of all bytes, as xz makes it (CRC-64): equal files have the same.
   uint64_t checksum() const { return checksum_; }
 
-  // Whether somebody has read to the end.
-  bool read_to_end() const { return read_to_end_; }
+  // Whether somebody was sent the end of it.
+  bool sent_to_end() const { return sent_to_end_; }
+  void NoteSentToEnd() const { sent_to_end_ = true; }
 
   // Reads up to `size` bytes from `offset` on; fewer only at the end.
   absl::StatusOr<size_t> ReadAt(uint64_t offset, char* out, size_t size) const;
@@ -61,7 +62,7 @@ class SpoolFile {
   const std::string caller_;
   uint64_t size_ = 0;
   uint64_t checksum_ = 0;
-  mutable std::atomic<bool> read_to_end_ = false;
+  mutable std::atomic<bool> sent_to_end_ = false;
 };
 
 // Thread-safe.

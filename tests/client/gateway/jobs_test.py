@@ -11,7 +11,10 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import ENDLESS, Gateway, detail, endless_infill, form, lines_of_infill, optimised_by_command
+from gateway_process import ENDLESS, TESTS, Gateway, detail, endless_infill, form, lines_of_infill, optimised_by_command
+
+sys.path.append(os.path.join(TESTS, "chaos"))
+from http2_client import GCODE_SERVICE, Connection, field, message
 
 PART = lines_of_infill(3)
 LONG = lines_of_infill(1500)
@@ -197,9 +200,6 @@ class Jobs(unittest.TestCase):
         self.assertTrue(until(lambda: gateway.metric("traverse_gateway_spool_bytes") == 0))
         self.assertEqual(gateway.metric("traverse_gateway_jobs"), 0)
 
-    def test_results_expire(self):
-        gateway = self.start("--job_ttl=1s")
-        job = self.create(gateway)
     def test_cancelled_jobs_wait_for_no_worker(self):
         gateway = self.start("--workers=1", "--max_requests_per_caller=4")
         self.create(gateway, endless_infill(), ENDLESS)
@@ -211,6 +211,9 @@ class Jobs(unittest.TestCase):
         self.assertTrue(until(lambda: gateway.metric("traverse_gateway_requests_in_flight") == 1))
         self.create(gateway)
 
+    def test_results_expire(self):
+        gateway = self.start("--job_ttl=1s")
+        job = self.create(gateway)
         self.assertTrue(until(lambda: gateway.ask("GET", self.path(job))[0] == 410))
         self.refused(410, "expired", gateway.ask("GET", self.path(job, "/file")))
         self.assertTrue(until(lambda: gateway.metric("traverse_gateway_spool_bytes") == 0))
@@ -261,6 +264,24 @@ class Jobs(unittest.TestCase):
         time.sleep(0.5)
         self.assertIsNone(gateway.process.poll(), "it ended before the result was fetched")
         self.assertEqual(gateway.ask("GET", self.path(job, "/file"))[2], optimised_by_command(part))
+        self.assertEqual(gateway.process.wait(timeout=20), 0)
+
+    def test_draining_waits_for_who_had_nothing_of_a_result(self):
+        """Whose window was shut when the file was read for him."""
+        gateway = self.start("--drain_timeout=280s")
+        job = self.create(gateway)
+        self.ended(gateway, job)
+        connection = Connection(gateway.grpc_port, window=0)
+        stream = connection.call(GCODE_SERVICE + "ReadJob")
+        connection.data(stream, message(field(1, job["id"].encode())), end=True)
+        self.assertTrue(until(lambda: gateway.metric("traverse_gateway_grpc_connections") == 1))
+        time.sleep(0.3)
+        connection.close()
+        self.assertTrue(until(lambda: gateway.metric("traverse_gateway_grpc_connections") == 0))
+        self.assertEqual(gateway.metric("traverse_gateway_jobs_unfetched"), 1)
+        gateway.process.send_signal(signal.SIGTERM)
+        self.assertTrue(until(lambda: gateway.ask("GET", "/readyz")[0] == 503))
+        self.assertEqual(gateway.ask("GET", self.path(job, "/file"))[2], optimised_by_command(PART))
         self.assertEqual(gateway.process.wait(timeout=20), 0)
 
     def test_draining_does_not_wait_for_ever(self):
