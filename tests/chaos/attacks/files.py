@@ -90,17 +90,22 @@ def unread_answers(server, end):
 
 
 def readers_that_go(server, end):
-    """Files to rewrite, good and refused, whose readers let no answer in, or all, and leave at any moment."""
+    """Files, good and refused, whose readers let no answer in, or a few bytes, or all, and leave at any moment."""
     dice = random.Random(53)
+    contents = infill(2), infill(15), b"nothing of a slicer\n"
     layers_that_are_not_there = varint(5 << 3) + varint(9) + varint(6 << 3) + varint(9)
-    calls = [message(field(1, options)) + message(field(2, content)) for options in (b"", layers_that_are_not_there)
-             for content in (infill(2), infill(30), b"nothing of a slicer\n")]
+    calls = [("Rewrite", message(field(1, options)) + message(field(2, content)))
+             for options in (b"", layers_that_are_not_there) for content in contents]
+    calls += [("CreateJob", message(field(1, b"")) + message(field(2, content))) for content in contents]
+    calls += [("Inspect", message(field(2, content))) for content in contents]
+    calls += [("Verify", message(field(1, content)) + message(field(2, content))) for content in contents]
 
     def step():
-        connection = Connection(server.port, window=dice.choice([0, None]))
+        connection = Connection(server.port, window=dice.choice([0, 5, None]))
         for _ in range(5):
-            stream = connection.call(GCODE_SERVICE + "Rewrite")
-            connection.send(frame(DATA, END_STREAM, stream, dice.choice(calls)))
+            method, messages = dice.choice(calls)
+            stream = connection.call(GCODE_SERVICE + method)
+            connection.send(frame(DATA, END_STREAM, stream, messages))
             time.sleep(dice.choice([0, 0.001, 0.01, 0.1]))
             if dice.randrange(4):
                 connection.send(frame(RST_STREAM, 0, stream, struct.pack(">I", 8)))
