@@ -209,12 +209,10 @@ void JobRun::OnDone() {
 }
 
 void JobRun::Queue(uint64_t index, Outgoing outgoing) {
-  if (!options_.build_order) {
-    out_.push_back(std::move(outgoing));
-    return;
-  }
-  early_.emplace(index, std::move(outgoing));
+  // Without an order, whatever is ready is next.
+  early_.emplace(options_.build_order ? index : next_out_, std::move(outgoing));
   for (auto next = early_.find(next_out_); next != early_.end(); next = early_.find(next_out_)) {
+    if (next->second.fault) ++window_layers_;
     out_.push_back(std::move(next->second));
     early_.erase(next);
     ++next_out_;
@@ -235,12 +233,12 @@ void JobRun::Feed() {
     LabelledLayer next = std::move(backlog_.front());
     backlog_.pop_front();
     next.label.index = next_position_++;
-    ++window_layers_;
-    window_points_ += next.label.points;
     if (!next.label.fault.empty()) {
-      Queue(next.label.index, {port_.EncodeFault(next.label), 1, next.label.points});
+      Queue(next.label.index, {port_.EncodeFault(next.label), 1, 0, /*fault=*/true});
       continue;
     }
+    ++window_layers_;
+    window_points_ += next.label.points;
     labels_[next_index_++] = next.label;
     const std::shared_ptr<Job> job = job_;
     mutex_.Unlock();

@@ -166,6 +166,10 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
     std::string message;
     int64_t layers;  // of the window, which it frees when it is written
     int64_t points;
+
+    // Of a layer with a fault, which takes its place in the window only when its turn has come.
+    // Until then the layers behind it must fit: one of them may be what the engine waits for.
+    bool fault = false;
   };
 
   explicit JobRun(JobPort& port) : port_(port) {}
@@ -207,8 +211,8 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   int64_t window_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;
 
   std::map<uint64_t, Outgoing> early_
-      TRAVERSE_GUARDED_BY(mutex_);                     // build order: solved before their turn
-  uint64_t next_out_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // build order: whose turn it is
+      TRAVERSE_GUARDED_BY(mutex_);                     // build order: ready before their turn
+  uint64_t next_out_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // whose turn it is
   std::deque<Outgoing> out_ TRAVERSE_GUARDED_BY(mutex_);
   std::optional<Outgoing> writing_ TRAVERSE_GUARDED_BY(mutex_);  // its message was moved out
   bool begun_writing_ TRAVERSE_GUARDED_BY(mutex_) = false;

@@ -104,5 +104,22 @@ TEST(PartialAnswers, OfAJobOfFaultyLayersAlone) {
   EXPECT_EQ(answer.summary->faulty_layers(), 3u);
 }
 
+// `auto` answers the first layer only when it knows the last one, which has to fit the window.
+TEST(PartialAnswers, FaultyLayersThatWaitForTheirTurnLeaveRoomForOthers) {
+  TestService service([](ServerOptions& options) { options.service.limits.window.layers = 8; });
+  v1::OptimizeBatchRequest request = MakeBatch(20, "auto");
+  for (int i = 1; i < 19; ++i) {
+    request.mutable_layers(i)->mutable_islands(0)->mutable_contours(0)->add_points(1);
+  }
+  request.mutable_options()->set_partial_answers(true);
+  request.mutable_options()->set_result_order(v1::RESULT_ORDER_BUILD);
+
+  const Answer answer = service.Batch(request, absl::Seconds(10));
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  ASSERT_EQ(answer.layers.size(), 20u);
+  for (uint64_t i = 0; i < 20; ++i) EXPECT_EQ(answer.layers[i].index(), i);
+}
+
 }  // namespace
 }  // namespace traverse
