@@ -155,7 +155,8 @@ absl::Status Listener::OpenPort() {
 
 void Listener::AddPort(grpc::ServerBuilder& builder) {
   if (connections_ == nullptr) {
-    builder.AddListeningPort(options_.listen, MakeCredentials(certificates_), &port_);
+    credentials_ = MakeCredentials(certificates_);
+    builder.AddListeningPort(options_.listen, credentials_, &port_);
     return;
   }
   for (int hand = 0; hand < Connections::kHands; ++hand) {

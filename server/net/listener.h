@@ -109,6 +109,10 @@ class Listener {
 
   // Several, because each is locked while it takes a connection.
   std::vector<std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>> acceptors_;
+
+  // Of any other port: gRPC asks them for certificates at each handshake, but does not keep them.
+  std::shared_ptr<grpc::ServerCredentials> credentials_;
+
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
   std::optional<LagProbe> lag_probe_;

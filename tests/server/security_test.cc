@@ -62,9 +62,9 @@ class Certificates {
   ScratchFolder folder_;
 };
 
-// The code of ListStrategies over a new connection. Empty `ca`: plaintext.
-grpc::StatusCode Call(const ServerProcess& server, const std::string& ca = "",
-                      const std::string& client = "", const std::string& token = "") {
+// The code of ListStrategies over a new connection to `address`. Empty `ca`: plaintext.
+grpc::StatusCode CallAt(const std::string& address, const std::string& ca = "",
+                        const std::string& client = "", const std::string& token = "") {
   std::shared_ptr<grpc::ChannelCredentials> credentials = grpc::InsecureChannelCredentials();
   if (!ca.empty()) {
     grpc::SslCredentialsOptions options;
@@ -75,17 +75,21 @@ grpc::StatusCode Call(const ServerProcess& server, const std::string& ca = "",
     }
     credentials = grpc::SslCredentials(options);
   }
-  const std::string port = server.address().substr(server.address().rfind(':'));
   grpc::ChannelArguments arguments;
   arguments.SetSslTargetNameOverride("localhost");
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   const auto stub = v1::RouteOptimizerService::NewStub(
-      grpc::CreateCustomChannel("127.0.0.1" + port, credentials, arguments));
+      grpc::CreateCustomChannel(address, credentials, arguments));
   grpc::ClientContext context;
   context.set_deadline(absl::ToChronoTime(absl::Now() + absl::Seconds(5)));
   if (!token.empty()) context.AddMetadata("authorization", "Bearer " + token);
   v1::ListStrategiesResponse response;
   return stub->ListStrategies(&context, {}, &response).error_code();
+}
+
+grpc::StatusCode Call(const ServerProcess& server, const std::string& ca = "",
+                      const std::string& client = "", const std::string& token = "") {
+  return CallAt(server.address(), ca, client, token);
 }
 
 TEST(Security, LoopbackIsToldFromOtherAddresses) {
@@ -144,6 +148,20 @@ TEST(Security, CertificatesAreRotatedWithoutARestart) {
   EXPECT_TRUE(TestService::Eventually(
       [&] { return Call(server, files.Path("new_ca.pem")) == grpc::StatusCode::OK; }));
   EXPECT_EQ(Call(server, files.Path("ca.pem")), grpc::StatusCode::UNAVAILABLE);
+}
+
+// gRPC asks for the certificates at each handshake. What was freed by then is overwritten here.
+TEST(Security, AUnixSocketKeepsItsCertificates) {
+  const Certificates files;
+  const std::string address = "unix:" + files.Path("socket");
+  setenv("GLIBC_TUNABLES", "glibc.malloc.perturb=165:glibc.malloc.tcache_count=0", 1);
+  ServerProcess server({"--listen=" + address, "--tls_certificate=" + files.Path("server.pem"),
+                        "--tls_key=" + files.Path("server.key")});
+  unsetenv("GLIBC_TUNABLES");
+
+  EXPECT_EQ(CallAt(address, files.Path("ca.pem")), grpc::StatusCode::OK);
+  server.process().Signal(SIGTERM);
+  EXPECT_EQ(server.process().Wait(), 0);
 }
 
 TEST(Security, AuthoritiesOfClientsAreRotatedWithoutARestart) {
