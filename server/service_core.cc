@@ -68,16 +68,18 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
 void ServiceCore::AbortStalled() {
   const absl::Status status = absl::DeadlineExceededError(
       absl::StrCat("nothing was sent or read for ", absl::FormatDuration(limits.idle_timeout)));
-  for (const auto& run : Runs()) {
-    run->AbortIfStalled(absl::ToChronoNanoseconds(limits.idle_timeout), status);
+  const auto time = absl::ToChronoNanoseconds(limits.idle_timeout);
+  for (const Call& call : Calls()) {
+    call.run->AbortIfStalled(time, status);
+    if (call.run->HasEnded(time)) call.cancel();
   }
 }
 
 void ServiceCore::GiveWay() {
   std::shared_ptr<JobRun> idlest;
-  for (const auto& run : Runs()) {
-    if (!run->IsStalled(kGiveWay)) continue;
-    if (idlest == nullptr || run->progress() < idlest->progress()) idlest = run;
+  for (const Call& call : Calls()) {
+    if (!call.run->IsStalled(kGiveWay)) continue;
+    if (idlest == nullptr || call.run->progress() < idlest->progress()) idlest = call.run;
   }
   if (idlest == nullptr) return;
   idlest->AbortIfStalled(
@@ -104,17 +106,18 @@ bool ServiceCore::TrimIfIdle(std::chrono::steady_clock::time_point now) {
   return trimmed_ = true;
 }
 
-std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
+std::vector<ServiceCore::Call> ServiceCore::Calls() const {
   MutexLock lock(mutex_);
-  std::vector<std::shared_ptr<JobRun>> runs;
-  for (const auto& [key, call] : runs_) runs.push_back(call.run);
-  return runs;
+  std::vector<Call> calls;
+  for (const auto& [key, call] : runs_) calls.push_back(call);
+  return calls;
 }
 
-void ServiceCore::Register(const std::shared_ptr<JobRun>& run, const std::string& peer) {
+void ServiceCore::Register(const std::shared_ptr<JobRun>& run, const std::string& peer,
+                           std::function<void()> cancel) {
   const double pending_before = connections_ != nullptr ? connections_->OnJob(peer) : 0;
   MutexLock lock(mutex_);
-  runs_[run.get()] = {run, PeerKey(peer), pending_before};
+  runs_[run.get()] = {run, std::move(cancel), PeerKey(peer), pending_before};
   ++registered_;
 }
 
@@ -193,7 +196,7 @@ void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
 }
 
 void ServiceCore::AbortAll(const absl::Status& status) {
-  for (const auto& run : Runs()) run->Abort(status);
+  for (const Call& call : Calls()) call.run->Abort(status);
 }
 
 std::string ServiceCore::MetricsText() {

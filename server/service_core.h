@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -60,8 +61,10 @@ class ServiceCore {
   // Throws what the constructor of JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
 
-  // The calls whose jobs were admitted, until gRPC is done with them.
-  void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
+  // The calls whose jobs were admitted, until gRPC is done with them. `cancel` ends a call without
+  // waiting for its reader. It may be called later than that.
+  void Register(const std::shared_ptr<JobRun>& run, const std::string& peer,
+                std::function<void()> cancel);
   void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
 
   // Begins to watch memory, and reports to `connections`, which may be null and must outlive their
@@ -82,7 +85,8 @@ class ServiceCore {
   // Ends all running jobs with `status`.
   void AbortAll(const absl::Status& status);
 
-  // Ends the running jobs whose callers do nothing.
+  // Ends the running jobs whose callers do nothing, and ended calls whose last messages nobody
+  // reads.
   void AbortStalled();
 
   // Ends the job whose caller has done nothing for longest, if that was a while: all places are
@@ -108,14 +112,15 @@ class ServiceCore {
   WakeLateness wake_lateness;
 
  private:
-  std::vector<std::shared_ptr<JobRun>> Runs() const;
-
   // A call, and its origin.
   struct Call {
     std::shared_ptr<JobRun> run;
+    std::function<void()> cancel;
     std::string peer;           // see PeerKey
     double pending_before = 0;  // from Connections::OnJob
   };
+
+  std::vector<Call> Calls() const;
 
   mutable Mutex mutex_;
   std::map<const JobRun*, Call> runs_ TRAVERSE_GUARDED_BY(mutex_);

@@ -122,6 +122,11 @@ void JobRun::AbortIfStalled(std::chrono::steady_clock::duration time, const absl
   Release();
 }
 
+bool JobRun::HasEnded(std::chrono::steady_clock::duration time) const {
+  MutexLock lock(mutex_);
+  return finished_ && std::chrono::steady_clock::now() - progress_ >= time;
+}
+
 bool JobRun::Hold() {
   MutexLock lock(mutex_);
   if (finished_) return false;
@@ -274,7 +279,10 @@ void JobRun::Pump(bool feed) {
   }
   const bool ended = engine_done_ && (abort_ || closed_);
   const bool finish = !finished_ && !writing_ && ended && holds_ == 0;
-  if (finish) finished_ = true;
+  if (finish) {
+    finished_ = true;
+    NoteProgress();
+  }
   const bool room = !finished_ && !abort_ && room_wanted_ && HasRoom();
   if (room) {
     room_wanted_ = false;

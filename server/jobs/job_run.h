@@ -140,13 +140,16 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // job waits for it: no worker has work for the job. Gives up a write that nobody reads.
   void AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status);
 
+  // Whether Finish was called `time` ago or earlier.
+  bool HasEnded(std::chrono::steady_clock::duration time) const;
+
   // While a hold is taken, Finish is not called: for work that uses the port. Returns false, and
   // takes none, once the job has ended: the port may then be deleted at any time. A read of the
   // transport may arrive as late as that.
   [[nodiscard]] bool Hold();
   void Release();
 
-  // Whether the job may still bring layers, and when it last made progress.
+  // Whether the job may still bring layers, and when it last made progress, its end included.
   bool waits_for_message() const;
   std::chrono::steady_clock::time_point progress() const;
 

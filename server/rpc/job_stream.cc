@@ -1,8 +1,11 @@
 #include "server/rpc/job_stream.h"
 
+#include <grpc/grpc.h>
+
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <functional>
 #include <utility>
 
 #include "server/jobs/return_margin.h"
@@ -27,6 +30,13 @@ void DiscardSome(const std::shared_ptr<std::deque<LabelledLayer>>& layers,
 bool OnlyDeadlineLimits(const JobSetup& setup) {
   return setup.time_limit == absl::InfiniteDuration() &&
          setup.spec.layer_time_limit == absl::InfiniteDuration();
+}
+
+// Cancels the call, even if gRPC is done with it. Its context may then be gone.
+std::function<void()> Canceller(grpc::CallbackServerContext& context) {
+  grpc_call_ref(context.c_call());
+  const std::shared_ptr<grpc_call> call(context.c_call(), grpc_call_unref);
+  return [call] { grpc_call_cancel(call.get(), nullptr); };
 }
 
 }  // namespace
@@ -57,7 +67,7 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
   run_ = JobRun::Make(*this);
   queue_ = core_.pool.NewQueue(call_.caller, [run = run_] { run->Abort(NoMemory()); });
   ticket_->WatchWork([queue = queue_] { return !queue->idle(); });
-  core_.Register(run_, call_.peer);
+  core_.Register(run_, call_.peer, Canceller(context_));
   return absl::OkStatus();
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
@@ -210,6 +211,37 @@ TEST(IdleTimeout, AReaderWhoNeverReadsIsGivenUp) {
 
   EXPECT_TRUE(service.Eventually([&] { return core.admission.jobs() == 0; }));
   EXPECT_TRUE(service.Eventually([&] { return core.queue_layers == 0; }));
+  context.TryCancel();
+  reader->Finish();
+}
+
+TEST(IdleTimeout, AnEndThatNobodyReadsIsGivenUp) {
+  TestService service([](ServerOptions& options) {
+    options.listen = "127.0.0.1:0";
+    options.service.limits.idle_timeout = absl::Milliseconds(200);
+  });
+  ServiceCore& core = service.server().core();
+  const Answer read = service.Batch(MakeBatch(1));
+  ASSERT_TRUE(read.status.ok());
+  v1::OptimizeBatchResponse first;
+  *first.mutable_layer() = read.layers.front();
+  // A channel that takes in the layer and not the summary, as long as nobody reads. gRPC says that
+  // the summary is written, because the end comes with it.
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES,
+                   static_cast<int>(first.ByteSizeLong()) + 20);
+  const auto stub = v1::RouteOptimizerService::NewStub(
+      grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", service.server().port()),
+                                grpc::InsecureChannelCredentials(), arguments));
+  grpc::ClientContext context;
+  const auto reader = stub->OptimizeBatch(&context, MakeBatch(1));
+
+  const char* both_ended = "traverse_jobs_total{code=\"OK\",strategy=\"none\"} 2";
+  EXPECT_TRUE(
+      service.Eventually([&] { return absl::StrContains(core.MetricsText(), both_ended); }));
+  EXPECT_TRUE(service.Eventually([&] { return core.calls() == 0; }));
+
   context.TryCancel();
   reader->Finish();
 }
