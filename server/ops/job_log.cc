@@ -127,7 +127,9 @@ JobLog::JobLog(const std::string& path) {
   logger_->flush_on(spdlog::level::info);
 }
 
-JobLog::~JobLog() = default;
+JobLog::~JobLog() {
+  if (file_ != nullptr) file_->End();
+}
 
 void JobLog::Job(const JobRecord& record) {
   if (logger_ == nullptr) return;

@@ -57,6 +57,8 @@ class JobLog {
 
   // A log that writes nothing.
   JobLog() = default;
+
+  // Waits until the lines are written, but not long for a reader that stands still.
   ~JobLog();
 
   // A log that appends to `path`; empty for stderr. Throws spdlog::spdlog_ex if the file cannot be

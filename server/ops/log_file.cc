@@ -1,10 +1,12 @@
 #include "server/ops/log_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <string_view>
+#include <climits>
 
 namespace traverse {
 namespace {
@@ -15,17 +17,8 @@ int OpenToAppend(const std::string& path) {
   return open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, kMode);
 }
 
-// Writes all of `text`, or returns how much of it could be.
-size_t WriteAll(int fd, std::string_view text) {
-  size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t count = write(fd, text.data() + done, text.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    done += static_cast<size_t>(count);
-  }
-  return done;
-}
+// How often to look whether the end has come.
+constexpr int kLookMilliseconds = 50;
 
 }  // namespace
 
@@ -49,11 +42,31 @@ bool LogFile::Reopen() {
   return true;
 }
 
+bool LogFile::WaitForRoom() {
+  pollfd polled{fd_, POLLOUT, 0};
+  while (!given_up_ && poll(&polled, 1, kLookMilliseconds) <= 0) {
+    given_up_ = Clock::now() >= end_.load();
+  }
+  return !given_up_;
+}
+
+size_t LogFile::WriteAll(std::string_view text) {
+  size_t done = 0;
+  while (done < text.size() && WaitForRoom()) {
+    const size_t part = std::min<size_t>(text.size() - done, PIPE_BUF);
+    const ssize_t count = write(fd_, text.data() + done, part);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    done += static_cast<size_t>(count);
+  }
+  return done;
+}
+
 void LogFile::sink_it_(const spdlog::details::log_msg& message) {
   spdlog::memory_buf_t line;
   if (within_line_) line.push_back('\n');
   formatter_->format(message, line);
-  const size_t written = WriteAll(fd_, {line.data(), line.size()});
+  const size_t written = WriteAll({line.data(), line.size()});
   if (written == line.size()) {
     within_line_ = false;
     return;
