@@ -42,6 +42,9 @@ struct ConnectionLimits {
   absl::Duration keepalive_time = absl::Seconds(30);     // idle time after which the peer is pinged
   absl::Duration keepalive_timeout = absl::Seconds(10);  // for the answer to the ping
   absl::Duration max_age = absl::InfiniteDuration();     // then clients are asked to reconnect
+
+  // A client that waits may ping as often; sooner a few times ends its connection.
+  absl::Duration client_ping_interval = absl::Seconds(30);
 };
 
 struct ListenerOptions {
