@@ -59,7 +59,7 @@ class Source {
     const { options, layers } = job.beginAttempt();
     await send(call, { options, layers });
     while (this.#call === call) {
-      this.#fetching ??= Promise.resolve(this.#layers.next());
+      this.#fetching ??= (async () => this.#layers.next())(); // async: a synchronous iterator throws at once
       let next;
       try {
         next = await this.#fetching;

@@ -112,14 +112,16 @@ for (const [form, as] of Object.entries(FORMS)) {
 }
 
 test("what the iterable throws comes out", async (t) => {
-  const server = await scripted(t, [9]);
+  const server = await scripted(t, [9], [9]);
   const client = await optimizer(t, [server.address]);
-  async function* broken() {
+  function* broken() {
     yield* layers(2);
     throw new RangeError("no third layer");
   }
+  async function* brokenLater() { yield* broken(); }
 
   await assert.rejects(collect(client.optimize(broken())), /no third layer/);
+  await assert.rejects(collect(client.optimize(brokenLater())), /no third layer/);
 });
 
 test("a token is asked for each attempt", async (t) => {
