@@ -47,18 +47,16 @@ class Source {
   error; // what the caller's iterable threw
   #layers;
   #fetching;
-  #call;
 
   constructor(layers) {
     this.#layers = (layers[Symbol.asyncIterator] ?? layers[Symbol.iterator]).call(layers);
   }
 
-  // Sends to `call` what lacks an answer, then further layers as it takes them.
+  // Sends to `call` what lacks an answer, then further layers as it takes them, until nobody reads its answers.
   async feed(call, job) {
-    this.#call = call;
     const { options, layers } = job.beginAttempt();
     await send(call, { options, layers });
-    while (this.#call === call) {
+    while (!call.destroyed) {
       this.#fetching ??= (async () => this.#layers.next())(); // async: a synchronous iterator throws at once
       let next;
       try {
@@ -68,7 +66,7 @@ class Source {
         call.cancel();
         return;
       }
-      if (this.#call !== call) return; // the next attempt takes it
+      if (call.destroyed) return; // the next attempt, if any, takes it
       if (next.done) {
         call.end();
         return;

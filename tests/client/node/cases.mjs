@@ -124,6 +124,26 @@ test("what the iterable throws comes out", async (t) => {
   await assert.rejects(collect(client.optimize(brokenLater())), /no third layer/);
 });
 
+test("layers are read only as long as somebody waits for routes", async (t) => {
+  const server = await scripted(t, [1e6], [0, grpc.status.INVALID_ARGUMENT]);
+  const client = await optimizer(t, [server.address]);
+  const [one] = layers(1);
+  let taken = 0;
+  function* many() { for (taken = 0; taken < 100_000; ++taken) yield one; }
+  const isLeftAlone = async () => {
+    const before = taken;
+    await sleep(20);
+    assert.equal(taken, before);
+    assert.ok(taken < 100_000);
+  };
+
+  for await (const _ of client.optimize(many())) break;
+  await isLeftAlone();
+
+  await assert.rejects(collect(client.optimize(many())), { code: "INVALID_ARGUMENT" });
+  await isLeftAlone();
+});
+
 test("a token is asked for each attempt", async (t) => {
   const server = await scripted(t, [0, grpc.status.UNAVAILABLE, 0.01], [9]);
   const tokens = ["old", "new"];
