@@ -141,6 +141,24 @@ class Scripted(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no third layer"):
             asyncio.run(run())
 
+    def test_a_layer_that_two_attempts_wait_for_is_sent_once(self):
+        async def run(server):
+            async def slow():
+                for one in layers(5):
+                    yield one
+                    while len(server.asked) < 2:
+                        await asyncio.sleep(0.01)
+
+            async with AsyncTravelOptimizer([server.address]) as optimizer:
+                return await collect(optimizer.optimize(slow(), 20))
+
+        gone = grpc.StatusCode.UNAVAILABLE
+        with ScriptedServer((0, gone, 0.01), (2, gone, 0.01), (9, None, None)) as server:
+            results = asyncio.run(run(server))
+
+        self.assertEqual([(result.index, result.id) for result in results], [(i, i + 1) for i in range(5)])
+        self.assertEqual([asked[0] for asked in server.asked], [1, 1, 3])
+
     def test_a_stream_that_a_proxy_resets_is_asked_for_again(self):
         for server, run in self.each_form((4, grpc.StatusCode.CANCELLED, None), (9, None, None)):
             self.assertEqual(len(run()), 5)

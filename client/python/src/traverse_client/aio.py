@@ -98,13 +98,19 @@ class _Source:
     def __init__(self, layers: Layers):
         self._layers = layers.__aiter__() if hasattr(layers, "__aiter__") else _as_async(layers)
         self._fetching: Optional["asyncio.Task[Optional[plan_pb2.Layer]]"] = None
+        self._attempt = 0
         self._ended = False
         self.fault: Optional[BaseException] = None
 
-    async def requests(self, job: RemainingJob) -> AsyncIterator[api.OptimizeRequest]:
+    def requests(self, job: RemainingJob) -> AsyncIterator[api.OptimizeRequest]:
+        """The messages of a new attempt. Those of the one before, which may wait for the same layer, end."""
+        self._attempt += 1
+        return self._requests(job, self._attempt)
+
+    async def _requests(self, job: RemainingJob, attempt: int) -> AsyncIterator[api.OptimizeRequest]:
         for request in opening(job):
             yield request
-        while not self._ended:
+        while attempt == self._attempt and not self._ended:
             if self._fetching is None:
                 self._fetching = asyncio.ensure_future(self._next())
             try:
@@ -114,6 +120,8 @@ class _Source:
             except BaseException as fault:
                 self.fault = fault
                 raise
+            if attempt != self._attempt:
+                return
             self._fetching = None
             if layer is None:
                 self._ended = True
