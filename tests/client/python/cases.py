@@ -159,6 +159,42 @@ class Scripted(unittest.TestCase):
         self.assertEqual([(result.index, result.id) for result in results], [(i, i + 1) for i in range(5)])
         self.assertEqual([asked[0] for asked in server.asked], [1, 1, 3])
 
+    def test_a_job_that_is_over_waits_for_no_layer(self):
+        async def run(server, end):
+            waits, over = asyncio.Event(), asyncio.Event()
+
+            async def stalled():
+                yield layers(1)[0]
+                try:
+                    waits.set()
+                    await asyncio.Event().wait()
+                finally:
+                    over.set()
+
+            async with AsyncTravelOptimizer([server.address]) as optimizer:
+                answers = optimizer.optimize(stalled(), 0.5)
+                await answers.__anext__()
+                await waits.wait()
+                await end(answers)
+                await asyncio.wait_for(over.wait(), 20)
+
+        async def deadline(answers):
+            with self.assertRaises(TraverseError):
+                await answers.__anext__()
+
+        async def cancel(answers):
+            task = asyncio.ensure_future(answers.__anext__())
+            await asyncio.sleep(0)
+            task.cancel()
+            await asyncio.wait([task])
+
+        async def leave(answers):
+            await answers.aclose()
+
+        for end in (deadline, cancel, leave):
+            with self.subTest(end=end.__name__), ScriptedServer((9, None, None)) as server:
+                asyncio.run(run(server, end))
+
     def test_a_stream_that_a_proxy_resets_is_asked_for_again(self):
         for server, run in self.each_form((4, grpc.StatusCode.CANCELLED, None), (9, None, None)):
             self.assertEqual(len(run()), 5)

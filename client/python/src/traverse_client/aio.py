@@ -49,32 +49,39 @@ class AsyncTravelOptimizer(_Client):
 
     async def optimize(self, layers: Layers, deadline_seconds: float = 30.0, *, strategy: Optional[str] = None,
                        options: Optional[options_pb2.JobOptions] = None) -> AsyncIterator[api.LayerResult]:
-        """As TravelOptimizer.optimize; `layers` may be an asynchronous iterable too. Cancelling the task ends the work."""
+        """As TravelOptimizer.optimize; `layers` may be an asynchronous iterable too. Cancelling the task ends the work.
+
+        If the job ends while it waits for a layer, that wait is cancelled in the iterable.
+        """
         deadline = time.monotonic() + deadline_seconds
         whole = is_whole(layers)
         job = RemainingJob(options, strategy, layers if whole else ())
         source = None if whole else _Source(layers)
         attempt = 0
-        while True:
-            call = self._begin(job, source, deadline - time.monotonic())
-            try:
-                async for answer in call:
-                    if answer.WhichOneof("result") == "layer":
-                        attempt = 0
-                        yield job.answered(answer.layer)
-                return
-            except (grpc.aio.AioRpcError, asyncio.CancelledError) as error:
-                if source is not None and source.fault is not None:
-                    raise source.fault from None
-                if isinstance(error, asyncio.CancelledError):
-                    raise
-                delay = retries.delay_before(error, attempt)
-                if error.code() not in retries.RETRIED or time.monotonic() + delay >= deadline:
-                    raise TraverseError(error.code(), error.details()) from error
-            finally:
-                call.cancel()
-            attempt += 1
-            await asyncio.sleep(delay)
+        try:
+            while True:
+                call = self._begin(job, source, deadline - time.monotonic())
+                try:
+                    async for answer in call:
+                        if answer.WhichOneof("result") == "layer":
+                            attempt = 0
+                            yield job.answered(answer.layer)
+                    return
+                except (grpc.aio.AioRpcError, asyncio.CancelledError) as error:
+                    if source is not None and source.fault is not None:
+                        raise source.fault from None
+                    if isinstance(error, asyncio.CancelledError):
+                        raise
+                    delay = retries.delay_before(error, attempt)
+                    if error.code() not in retries.RETRIED or time.monotonic() + delay >= deadline:
+                        raise TraverseError(error.code(), error.details()) from error
+                finally:
+                    call.cancel()
+                attempt += 1
+                await asyncio.sleep(delay)
+        finally:
+            if source is not None:
+                source.close()
 
     def _begin(self, job, source, timeout):
         metadata = channels.authorization(self._token)
@@ -101,6 +108,12 @@ class _Source:
         self._attempt = 0
         self._ended = False
         self.fault: Optional[BaseException] = None
+
+    def close(self) -> None:
+        """The job is over: no further layer is taken."""
+        self._attempt += 1
+        if self._fetching is not None:
+            self._fetching.cancel()
 
     def requests(self, job: RemainingJob) -> AsyncIterator[api.OptimizeRequest]:
         """The messages of a new attempt. Those of the one before, which may wait for the same layer, end."""
