@@ -21,6 +21,8 @@ from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGatew
                              RewriteOptions, RewriteProgress, TravelOptimizer, TraverseError, island, layer)
 from programs import Gateway, Server, Wire
 from traverse_client.file_job import FileJob
+from traverse_client.optimizer import _Source
+from traverse_client.remaining_job import RemainingJob
 from traverse_client.wire import retry_info_pb2
 from traverse_client.wire import route_optimizer_service_pb2 as api
 from traverse_client.wire import route_optimizer_service_pb2_grpc as service
@@ -342,6 +344,21 @@ class Real(unittest.TestCase):
         gateway = self.start(Gateway)
         with GcodeGateway([gateway.address]) as client, self.assertRaises(TraverseError):
             client.rewrite(b"")
+
+
+class LateThread(unittest.TestCase):
+    def test_an_attempt_that_is_over_before_it_is_read_changes_nothing(self):
+        job, source = RemainingJob(None, None), _Source(iter(layers(2)))
+        late = source.requests(job)
+        source.leave()
+        now = source.requests(job)
+        next(now)
+        next(now)
+        job.answered(api.LayerResult(index=0))
+
+        self.assertEqual([len(request.layers) for request in late], [0])
+        self.assertEqual([request.layers[0].id for request in now], [2])
+        self.assertEqual(job.answered(api.LayerResult(index=1)).index, 1)
 
 
 class LastCall(unittest.TestCase):

@@ -1,5 +1,6 @@
 """Layers in, routes out."""
 
+import itertools
 import threading
 import time
 from typing import Iterable, Iterator, List, Optional, Sequence, Union
@@ -132,8 +133,10 @@ class _Source:
             self._attempt += 1
 
     def requests(self, job: RemainingJob) -> Iterator[api.OptimizeRequest]:
-        attempt = self._attempt
-        yield from opening(job)
+        """The messages of a new attempt, which begins now: gRPC's thread may get its first turn when it is over."""
+        return itertools.chain(opening(job), self._rest(job, self._attempt))
+
+    def _rest(self, job: RemainingJob, attempt: int) -> Iterator[api.OptimizeRequest]:
         while True:
             with self._lock:
                 if attempt != self._attempt:

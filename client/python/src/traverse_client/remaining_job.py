@@ -1,6 +1,7 @@
 """What is left of a job, whatever attempt is under way: the part that sync and asyncio share."""
 
 import collections
+import itertools
 from typing import Deque, Iterable, Iterator, Optional, Sequence, Union
 
 from traverse_client.wire import options_pb2, plan_pb2
@@ -60,10 +61,9 @@ class RemainingJob:
 
 
 def opening(job: RemainingJob) -> Iterator[api.OptimizeRequest]:
-    """The first messages of a streamed attempt: the options, then the layers that lack an answer."""
-    yield api.OptimizeRequest(options=job.begin_attempt())
-    for layer in job.unanswered():
-        yield api.OptimizeRequest(layers=[layer])
+    """Begins a streamed attempt and returns its first messages: the options, then the layers that lack an answer."""
+    first = api.OptimizeRequest(options=job.begin_attempt())
+    return itertools.chain([first], (api.OptimizeRequest(layers=[layer]) for layer in job.unanswered()))
 
 
 def is_whole(layers: Union[Sequence[plan_pb2.Layer], Iterable[plan_pb2.Layer]]) -> bool:
