@@ -84,6 +84,9 @@ class ScriptedServer:
         return self
 
     def __exit__(self, *_):
+        self.stop()
+
+    def stop(self):
         self._server.stop(None).wait()
 
 
@@ -196,6 +199,22 @@ class Scripted(unittest.TestCase):
         for end in (deadline, cancel, leave):
             with self.subTest(end=end.__name__), ScriptedServer((9, None, None)) as server:
                 asyncio.run(run(server, end))
+
+    def test_the_deadline_holds_while_the_iterable_waits(self):
+        over = threading.Event()
+        with ScriptedServer((9, None, None)) as server, TravelOptimizer([server.address]) as optimizer:
+            def stalled():
+                yield layers(1)[0]
+                server.stop()
+                over.wait(20)
+
+            begun = time.monotonic()
+            with self.assertRaises(TraverseError):
+                list(optimizer.optimize(stalled(), 1))
+            seconds = time.monotonic() - begun
+            over.set()
+
+        self.assertLess(seconds, 10)
 
     def test_a_stream_that_a_proxy_resets_is_asked_for_again(self):
         for server, run in self.each_form((4, grpc.StatusCode.CANCELLED, None), (9, None, None)):
@@ -346,7 +365,9 @@ class Real(unittest.TestCase):
             client.rewrite(b"")
 
 
-class LateThread(unittest.TestCase):
+class Threads(unittest.TestCase):
+    """gRPC reads each attempt on a thread of its own, which may be late."""
+
     def test_an_attempt_that_is_over_before_it_is_read_changes_nothing(self):
         job, source = RemainingJob(None, None), _Source(iter(layers(2)))
         late = source.requests(job)
@@ -359,6 +380,32 @@ class LateThread(unittest.TestCase):
         self.assertEqual([len(request.layers) for request in late], [0])
         self.assertEqual([request.layers[0].id for request in now], [2])
         self.assertEqual(job.answered(api.LayerResult(index=1)).index, 1)
+
+    def test_what_is_being_fetched_when_an_attempt_ends_goes_to_the_next_one(self):
+        def fails():
+            raise KeyError("no layer")
+
+        for last in (lambda: layers(1)[0], fails):
+            asked, goes_on = threading.Event(), threading.Event()
+
+            def slow():
+                asked.set()
+                goes_on.wait(5)
+                yield last()
+
+            job, source = RemainingJob(None, None), _Source(slow())
+            with concurrent.futures.ThreadPoolExecutor() as pool:
+                first = pool.submit(list, source.requests(job))
+                self.assertTrue(asked.wait(20))
+                source.leave()
+                second = pool.submit(list, source.requests(job))
+                goes_on.set()
+
+                self.assertEqual(len(first.result()), 1)
+                if last is fails:
+                    self.assertRaisesRegex(KeyError, "no layer", second.result)
+                else:
+                    self.assertEqual([request.layers[0].id for request in second.result()[1:]], [1])
 
 
 class LastCall(unittest.TestCase):

@@ -87,8 +87,8 @@ class TravelOptimizer:
                     raise TraverseError(error.code(), error.details()) from error
             finally:
                 call.cancel()  # nothing if it has ended
-            if source is not None:
-                source.leave()
+                if source is not None:
+                    source.leave()
             attempt += 1
             time.sleep(delay)
 
@@ -119,18 +119,22 @@ class Strategies(List[api.StrategyInfo]):
 
 
 class _Source:
-    """A caller's iterator of layers, which gRPC reads on a thread of its own, one attempt after the other."""
+    """A caller's iterator of layers, which gRPC reads on a thread of each attempt. What is being fetched when one ends goes
+    to the next; nobody else waits for it."""
 
     def __init__(self, layers: Iterator[plan_pb2.Layer]):
         self._layers = layers
         self._attempt = 0
-        self._lock = threading.Lock()
+        self._changed = threading.Condition()
+        self._reading = False  # the thread of an attempt, which may be over, asks the iterator
+        self._fetched: Optional[plan_pb2.Layer] = None  # and not sent
         self.fault: Optional[BaseException] = None
 
     def leave(self) -> None:
-        """The attempt under way is over: its thread takes no further layer."""
-        with self._lock:
+        """The attempt under way is over: its thread sends no further layer."""
+        with self._changed:
             self._attempt += 1
+            self._changed.notify_all()
 
     def requests(self, job: RemainingJob) -> Iterator[api.OptimizeRequest]:
         """The messages of a new attempt, which begins now: gRPC's thread may get its first turn when it is over."""
@@ -138,15 +142,29 @@ class _Source:
 
     def _rest(self, job: RemainingJob, attempt: int) -> Iterator[api.OptimizeRequest]:
         while True:
-            with self._lock:
+            with self._changed:
+                self._changed.wait_for(lambda: attempt != self._attempt or not self._reading)
                 if attempt != self._attempt:
                     return
-                try:
-                    layer = next(self._layers)
-                except StopIteration:
+                self._reading = True
+            self._fetch()  # without the lock, because this may take long
+            with self._changed:
+                self._reading = False
+                self._changed.notify_all()
+                if attempt != self._attempt:
                     return
-                except BaseException as fault:  # pylint: disable=broad-except
-                    self.fault = fault
-                    raise
+                if self.fault is not None:
+                    raise self.fault
+                layer, self._fetched = self._fetched, None
+                if layer is None:
+                    return
                 job.sent(layer)
             yield api.OptimizeRequest(layers=[layer])
+
+    def _fetch(self) -> None:
+        """Asks the iterator, unless what it said to an attempt that was over is still there."""
+        if self._fetched is None and self.fault is None:
+            try:
+                self._fetched = next(self._layers, None)
+            except BaseException as fault:  # pylint: disable=broad-except
+                self.fault = fault
