@@ -5,6 +5,7 @@ import { FileJob } from "./file_job.js";
 import { connect, metadataWith, send, services, shuffled } from "./wire.js";
 
 const CANCEL_MS = 10_000;
+const ABANDON_MS = 1000; // to cancel a job whose deadline may be over: its caller waits for it
 
 export class GcodeGateway {
   #stubs;
@@ -35,7 +36,8 @@ export class GcodeGateway {
       return job.file;
     } catch (error) {
       // If this fails too, it expires.
-      if (job.abandoned) await this.#unary(job.gateway, "CancelJob", { id: job.abandoned }, Date.now() + CANCEL_MS).catch(() => {});
+      const soon = Date.now() + ABANDON_MS;
+      if (job.abandoned) await this.#unary(job.gateway, "CancelJob", { id: job.abandoned }, soon).catch(() => {});
       throw error;
     }
   }

@@ -16,8 +16,8 @@ const SQUARES = [0, 40, 20].flatMap((x) => [0, 30].map((y) => [[x, y], [x + 4, y
 const layers = (count, first = 1) => Array.from({ length: count }, (_, i) => layer([island({ contours: SQUARES })],
   { id: first + i, zMm: 0.2 * (first + i) }));
 
-const api = grpc.loadPackageDefinition(loader.loadSync("traverse/v1/route_optimizer_service.proto", {
-  keepCase: true, longs: Number, oneofs: true, includeDirs: ["node_modules/traverse-client/proto"] })).traverse.v1;
+const api = grpc.loadPackageDefinition(loader.loadSync(["route_optimizer_service", "gcode_service"].map((name) => `traverse/v1/${name}.proto`),
+  { keepCase: true, longs: Number, oneofs: true, includeDirs: ["node_modules/traverse-client/proto"] })).traverse.v1;
 const { root: rpc } = protobuf.parse(`syntax = "proto3";
   message Any { string type_url = 1; bytes value = 2; } message Status { repeated Any details = 3; }
   message Duration { int64 seconds = 1; int32 nanos = 2; } message RetryInfo { Duration retry_delay = 1; }`, { keepCase: true });
@@ -30,6 +30,15 @@ function refusal(code, seconds) {
     metadata.set("grpc-status-details-bin", Buffer.from(rpc.lookupType("Status").encode({ details }).finish()));
   }
   return { code, details: "scripted", metadata };
+}
+
+// The address of a server with these methods.
+async function serve(t, { service }, methods) {
+  const server = new grpc.Server();
+  server.addService(service, methods);
+  const port = await promisify(server.bindAsync.bind(server))("127.0.0.1:0", grpc.ServerCredentials.createInsecure());
+  t.after(() => server.forceShutdown());
+  return `127.0.0.1:${port}`;
 }
 
 // Answers each attempt as its turn says: [layers to answer, status code or undefined, delay in s].
@@ -56,8 +65,7 @@ async function scripted(t, ...turns) {
         call.end();
       } };
   };
-  const server = new grpc.Server();
-  server.addService(api.RouteOptimizerService.service, {
+  const address = await serve(t, api.RouteOptimizerService, {
     OptimizeBatch(call) {
       const turn = begin(call);
       for (const one of call.request.layers) turn.answer(one);
@@ -69,9 +77,7 @@ async function scripted(t, ...turns) {
       call.on("end", () => turn.refused || turn.end());
     },
     ListStrategies: (_, done) => done(null, {}) });
-  const port = await promisify(server.bindAsync.bind(server))("127.0.0.1:0", grpc.ServerCredentials.createInsecure());
-  t.after(() => server.forceShutdown());
-  return { asked, tokens, address: `127.0.0.1:${port}` };
+  return { asked, tokens, address };
 }
 
 async function optimizer(t, addresses, options) {
@@ -248,6 +254,22 @@ test("a file comes back with progress", async (t) => {
   assert.match(made.report, /<html/);
   assert.ok(seen.length > 0);
   await assert.rejects(client.rewrite(new Uint8Array()), TraverseError);
+});
+
+test("who does not wait for a file is not kept by a gateway that hangs", async (t) => {
+  let ms;
+  const address = await serve(t, api.GcodeService, {
+    CreateJob: (call, done) => call.on("data", () => {}).on("end", () => done(null, { job: { id: "one" } })),
+    CancelJob(call, done) {
+      ms = call.getDeadline() - Date.now();
+      done(null, {});
+    } });
+  const client = new GcodeGateway([address]);
+  t.after(() => client.close());
+  const onProgress = () => { throw new Error("enough"); };
+
+  await assert.rejects(client.rewrite(Buffer.from("G1"), { onProgress }), /enough/);
+  assert.ok(ms < 2000);
 });
 
 // A wire to `address` that can be cut; new connections then go through again.

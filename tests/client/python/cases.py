@@ -23,7 +23,7 @@ from programs import Gateway, Server, Wire
 from traverse_client.file_job import FileJob
 from traverse_client.optimizer import _Source
 from traverse_client.remaining_job import RemainingJob
-from traverse_client.wire import retry_info_pb2
+from traverse_client.wire import gcode_service_pb2, gcode_service_pb2_grpc, retry_info_pb2
 from traverse_client.wire import route_optimizer_service_pb2 as api
 from traverse_client.wire import route_optimizer_service_pb2_grpc as service
 
@@ -491,6 +491,32 @@ class DroppedCalls(unittest.TestCase):
                 time.sleep(0.05)
 
             self.assertEqual(gateway.metric("traverse_gateway_jobs"), 0)
+
+    def test_who_does_not_wait_is_not_kept_by_a_gateway_that_hangs(self):
+        seconds = []
+
+        class Servicer(gcode_service_pb2_grpc.GcodeServiceServicer):
+            def CreateJob(self, requests, context):
+                return gcode_service_pb2.CreateJobResponse(job={"id": "one"})
+
+            def CancelJob(self, request, context):
+                seconds.append(context.time_remaining())
+                return gcode_service_pb2.CancelJobResponse()
+
+        server = grpc.server(concurrent.futures.ThreadPoolExecutor(4))
+        gcode_service_pb2_grpc.add_GcodeServiceServicer_to_server(Servicer(), server)
+        address = f"127.0.0.1:{server.add_insecure_port('127.0.0.1:0')}"
+        server.start()
+        self.addCleanup(server.stop, None)
+
+        def leave(progress):
+            raise KeyError("enough")
+
+        for run in self.forms():
+            with self.assertRaisesRegex(KeyError, "enough"):
+                run([address], b"G1", on_progress=leave)
+
+            self.assertLess(seconds.pop(), 2)
 
     def test_the_same_key_with_another_file_is_refused(self):
         gateway = self.gateway()

@@ -9,7 +9,7 @@ import grpc.aio
 
 from traverse_client import channels, files, retries
 from traverse_client.errors import TraverseError
-from traverse_client.file_job import CANCEL_SECONDS, File, FileJob, OnProgress, RewrittenFile
+from traverse_client.file_job import ABANDON_SECONDS, File, FileJob, OnProgress, RewrittenFile
 from traverse_client.optimizer import SERVICE, Strategies
 from traverse_client.remaining_job import RemainingJob, is_whole, opening
 from traverse_client.wire import gcode_service_pb2, options_pb2, plan_pb2
@@ -193,7 +193,7 @@ class AsyncGcodeGateway:
             left = job.abandoned()
             if left is not None:
                 try:
-                    await self._stubs[job.gateway].CancelJob(left, timeout=CANCEL_SECONDS,
+                    await self._stubs[job.gateway].CancelJob(left, timeout=ABANDON_SECONDS,
                                                              metadata=channels.authorization(self._token))
                 except grpc.RpcError:
                     pass  # it expires

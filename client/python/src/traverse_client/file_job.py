@@ -14,6 +14,7 @@ from traverse_client.wire import gcode_service_pb2 as api
 
 PIECE_BYTES = 1 << 20
 CANCEL_SECONDS = 10.0
+ABANDON_SECONDS = 1.0  # to cancel a job whose deadline may be over: its caller waits for it
 
 File = Union[str, "os.PathLike[str]", bytes, BinaryIO]
 OnProgress = Callable[[api.RewriteProgress], None]

@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence
 import grpc
 
 from traverse_client import channels
-from traverse_client.file_job import CANCEL_SECONDS, File, FileJob, OnProgress, RewrittenFile
+from traverse_client.file_job import ABANDON_SECONDS, File, FileJob, OnProgress, RewrittenFile
 from traverse_client.wire import gcode_service_pb2 as api
 from traverse_client.wire import gcode_service_pb2_grpc as service
 
@@ -62,7 +62,8 @@ class GcodeGateway:
             left = job.abandoned()
             if left is not None:
                 try:
-                    self._stubs[job.gateway].CancelJob(left, timeout=CANCEL_SECONDS, metadata=channels.authorization(self._token))
+                    self._stubs[job.gateway].CancelJob(left, timeout=ABANDON_SECONDS,
+                                                       metadata=channels.authorization(self._token))
                 except grpc.RpcError:
                     pass  # it expires
             raise
