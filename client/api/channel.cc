@@ -29,6 +29,10 @@ constexpr int kConnectTimeoutMs = 5000;
 // Finds a replaced server again as fast as a rollout replaces it; gRPC would wait for a second.
 constexpr int kFirstReconnectMs = 200;
 
+// A server that says nothing for so long, and then answers no ping for 20 s, is gone. A connection
+// to a machine without power does not end by itself.
+constexpr int kKeepaliveMs = 60'000;
+
 // Leaves out servers whose health check says that they take no jobs, such as those that drain.
 constexpr char kServiceConfig[] = R"({"loadBalancingConfig": [{"round_robin": {}}],
     "healthCheckConfig": {"serviceName": "traverse.v1.RouteOptimizerService"}})";
@@ -168,6 +172,9 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::
   arguments.SetServiceConfigJSON(kServiceConfig);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kConnectTimeoutMs);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, kFirstReconnectMs);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  // A search may take long to answer; without this the pings stop after two.
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, options.own_connection ? 1 : 0);
   arguments.SetMaxReceiveMessageSize(-1);  // an answer is as large as the layer that was sent
   return grpc::CreateCustomChannel(target, *credentials, arguments);
