@@ -26,6 +26,7 @@ def channel(secure: Callable[..., Any], insecure: Callable[..., Any], service: s
     target = addresses[0] if len(addresses) == 1 else "ipv4:" + ",".join(addresses)
     config = {"loadBalancingConfig": [{policy: {}}], "healthCheckConfig": {"serviceName": service}}
     options: List[Tuple[str, Any]] = [("grpc.service_config", json.dumps(config)), ("grpc.keepalive_time_ms", 60_000),
+                                      ("grpc.http2.max_pings_without_data", 0),  # a search may take long; else two
                                       ("grpc.max_reconnect_backoff_ms", 2_000)]
     if server_name:
         options.append(("grpc.ssl_target_name_override", server_name))
