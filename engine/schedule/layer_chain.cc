@@ -358,9 +358,9 @@ void LayerChain::MaybeFinish() {
     Submit([this] { RunBoundChain(); }, chain_bound_.points(), added_);
     return;
   }
-  finished_ = true;
   const std::optional<double> bound = cancel_.cancelled() ? std::nullopt : chain_lower_bound_;
   executor_.Submit([self = shared_from_this(), bound] { self->outbox_.Done(bound); });
+  finished_ = true;
 }
 
 // Earlier layers first: their ends are what the anchors of all others wait for.
@@ -378,7 +378,6 @@ void LayerChain::Submit(std::function<void()> stage, int64_t points, uint64_t ra
     running_late_ = true;
     stage = [this] { RunLate(); };
   }
-  ++tasks_;
   auto run = [self = shared_from_this(), stage = std::move(stage), submitted] {
     // Also if the stage runs out of memory: its caller can then cancel the job, which ends.
     const absl::Cleanup end = [&self] {
@@ -393,7 +392,9 @@ void LayerChain::Submit(std::function<void()> stage, int64_t points, uint64_t ra
     }
     stage();
   };
+  // There may be no memory for it. Its end takes the lock, so it is counted in time.
   executor_.SubmitLarge(std::move(run), points, rank);
+  ++tasks_;
 }
 
 void LayerChain::RunLate() {

@@ -18,24 +18,17 @@ absl::Status NoMemory() {
 
 void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<Strategy> strategy,
                    Executor& executor) {
-  {
-    MutexLock lock(mutex_);
-    if (abort_) return;
-    options_ = options;
-    engine_done_ = false;
-  }
+  // There may be no memory for it. Nobody waits for the end of what has not begun.
   std::shared_ptr<Job> job = Job::Start(spec, std::move(strategy), executor, *this);
-  bool cancel = false;
-  {
-    MutexLock lock(mutex_);
-    job_ = job;
-    cancel = abort_.has_value();
-    for (const LabelledLayer& layer : backlog_) {
-      if (layer.label.fault.empty()) job->Announce(layer.layer.plan);
-    }
-    if (closed_) job->AnnounceEnd();
+  MutexLock lock(mutex_);
+  if (abort_) return;
+  options_ = options;
+  engine_done_ = false;
+  job_ = std::move(job);
+  for (const LabelledLayer& layer : backlog_) {
+    if (layer.label.fault.empty()) job_->Announce(layer.layer.plan);
   }
-  if (cancel) job->Cancel();
+  if (closed_) job_->AnnounceEnd();
 }
 
 void JobRun::Add(LabelledLayer layer) {
@@ -232,6 +225,7 @@ bool JobRun::FitsWindow(int64_t points) const {
 bool JobRun::HasRoom() const { return backlog_.empty() && FitsWindow(1); }
 
 void JobRun::Feed() {
+  MutexLock lock(mutex_);
   if (feeding_ || job_ == nullptr) return;
   feeding_ = true;
   while (!abort_ && !backlog_.empty() && FitsWindow(backlog_.front().label.points)) {
@@ -246,25 +240,28 @@ void JobRun::Feed() {
     window_points_ += next.label.points;
     labels_[next_index_++] = next.label;
     const std::shared_ptr<Job> job = job_;
-    mutex_.Unlock();
+    lock.Unlock();
     job->Add(std::move(next.layer));
-    mutex_.Lock();
+    lock.Lock();
   }
   feeding_ = false;
   if (closed_ && backlog_.empty() && !engine_closed_ && !abort_) {
     engine_closed_ = true;
     const std::shared_ptr<Job> job = job_;
-    mutex_.Unlock();
+    lock.Unlock();
     job->Close();
-    mutex_.Lock();
   }
 }
 
 void JobRun::Pump(bool feed) {
   // Finish, here or in another thread, may give up the last other reference.
   const std::shared_ptr<JobRun> self = shared_from_this();
+  try {
+    if (feed) Feed();
+  } catch (const std::bad_alloc&) {
+    Abort(NoMemory());
+  }
   MutexLock lock(mutex_);
-  if (feed) Feed();
   bool write = false;
   bool more_follows = false;
   std::string message;

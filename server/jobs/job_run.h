@@ -180,9 +180,8 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // Does whatever can be done next. Every public method ends with it.
   void Pump(bool feed);
 
-  // Gives layers to the engine while the window has room, and answers those with a fault. Unlocks
-  // for the engine's calls.
-  void Feed() TRAVERSE_REQUIRES(mutex_);
+  // Gives layers to the engine while the window has room, and answers those with a fault.
+  void Feed();
 
   void TakeLayer(LayerOutcome outcome);
 

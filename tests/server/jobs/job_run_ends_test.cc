@@ -6,9 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <functional>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "server/jobs/job_run.h"
@@ -107,6 +110,42 @@ TEST_F(JobRunTest, AnAbortWhileTheEngineStartsIsNotLost) {
   ASSERT_TRUE(port_.WaitForFinish());
   EXPECT_EQ(port_.status().message(), "now");
   EXPECT_TRUE(port_.messages().empty());
+}
+
+TEST_F(JobRunTest, AJobThatTheEngineHasNoMemoryToStartCanBeAborted) {
+  StartingExecutor executor(*queue_, [] { throw std::bad_alloc(); });
+
+  EXPECT_THROW(port_.run().Start({}, {}, Slow(0), executor), std::bad_alloc);
+  port_.run().Abort(NoMemory());
+
+  EXPECT_TRUE(port_.WaitForFinish());
+}
+
+// Has no memory for its first task.
+class FullExecutor : public Executor {
+ public:
+  explicit FullExecutor(Executor& executor) : executor_(executor) {}
+
+  void Submit(std::function<void()> task) override {
+    if (!std::exchange(submitted_, true)) throw std::bad_alloc();
+    executor_.Submit(std::move(task));
+  }
+  int threads() const override { return executor_.threads(); }
+
+ private:
+  Executor& executor_;
+  bool submitted_ = false;
+};
+
+TEST_F(JobRunTest, AJobWhoseLayersTheEngineHasNoMemoryForEnds) {
+  FullExecutor executor(*queue_);
+  port_.run().Start({}, {}, Slow(0), executor);
+  for (uint64_t i = 0; i < 3; ++i) port_.run().Add(Layer(i));
+
+  port_.run().Push();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status(), NoMemory());
 }
 
 // Wants more memory than there is, in every layer but the first.
