@@ -124,6 +124,7 @@ absl::StatusOr<CertificateSet> ReadCertificates(const TlsOptions& tls, absl::Tim
 absl::StatusOr<std::shared_ptr<CertificateStore>> CertificateStore::Make(
     const TlsOptions& tls, std::function<void(const absl::Status&)> on_reload) {
   std::shared_ptr<CertificateStore> store(new CertificateStore(tls, std::move(on_reload)));
+  const MutexLock looking(store->looking_);
   const MutexLock lock(store->mutex_);
   store->states_ = store->StatesNow();
   absl::StatusOr<CertificateSet> set = ReadCertificates(tls, absl::Now());
@@ -142,13 +143,11 @@ CertificateStore::States CertificateStore::StatesNow() const {
 }
 
 void CertificateStore::Look(bool anyway) {
+  MutexLock looking(looking_);
   // Before the files are read: what changes in between is seen the next time.
   const States states = StatesNow();
-  {
-    MutexLock lock(mutex_);
-    if (states == states_ && !anyway) return;
-    states_ = states;
-  }
+  if (states == states_ && !anyway) return;
+  states_ = states;
   absl::StatusOr<CertificateSet> set = ReadCertificates(tls_, absl::Now());
   if (set.ok()) {
     MutexLock lock(mutex_);

@@ -62,9 +62,10 @@ class CertificateStore {
 
   const TlsOptions tls_;
   const std::function<void(const absl::Status&)> on_reload_;
+  Mutex looking_;  // while files are read: what was read first must not replace what came later
+  States states_ TRAVERSE_GUARDED_BY(looking_);
   mutable Mutex mutex_;
   std::shared_ptr<const CertificateSet> current_ TRAVERSE_GUARDED_BY(mutex_);
-  States states_ TRAVERSE_GUARDED_BY(mutex_);
 };
 
 }  // namespace traverse
