@@ -55,10 +55,10 @@ class Attacked:
         self.log.close()
         return [f"{len(bad)} lines of the log are not its own: {bad[0][:100]}"] if bad else []
 
-    def still_held(self):
-        """What is held for callers who have gone, five seconds later."""
-        held = [f"{name} 0" for name in self.empty]
-        end = time.monotonic() + 5
+    def still_held(self, names=None, seconds=5):
+        """Which gauges, of `names` or else of all, are not 0 so many seconds later: what is held for callers who have gone."""
+        held = [f"{name} 0" for name in names or self.empty]
+        end = time.monotonic() + seconds
         while held and time.monotonic() < end:
             told = self.get("/metrics").splitlines()
             held = [line for line in held if line not in told]
@@ -85,8 +85,9 @@ class Attacked:
 class Server(Attacked):
     methods = [SERVICE + "Optimize", SERVICE + "OptimizeBatch", SERVICE + "ListStrategies"]
     small_job = options("auto") + layer(30) * 5
-    empty = [f"traverse_{name}" for name in ("queue_layers", "queue_points", "jobs_in_flight", "workers_busy", "connections",
-                                             'memory_bytes{kind="receiving"}', 'memory_bytes{kind="jobs"}')]
+    work = [f"traverse_{name}" for name in ("queue_layers", "queue_points", "jobs_in_flight", "workers_busy",
+                                            'memory_bytes{kind="jobs"}')]
+    empty = work + ["traverse_connections", 'traverse_memory_bytes{kind="receiving"}']
     refusals = "traverse_rejected_total"
 
     def __init__(self, max_memory, flags=(), files=None):
@@ -113,8 +114,9 @@ def infill(layers):
 class Gateway(Attacked):
     methods = [GCODE_SERVICE + "Rewrite", GCODE_SERVICE + "Inspect", GCODE_SERVICE + "Verify"]
     small_job = field(2, infill(3))  # of Inspect: Rewrite takes it for data without options
-    empty = [f"traverse_gateway_{name}" for name in ("requests_in_flight", "requests_waiting", "workers_busy", "work_bytes",
-                                                     "spool_bytes", "jobs", "grpc_connections", "receiving_bytes")]
+    work = [f"traverse_gateway_{name}" for name in ("requests_in_flight", "requests_waiting", "workers_busy", "work_bytes",
+                                                    "spool_bytes", "jobs")]
+    empty = work + ["traverse_gateway_grpc_connections", "traverse_gateway_receiving_bytes"]
     refusals = "traverse_gateway_requests_total"
 
     def __init__(self, max_memory, flags=(), files=None):
