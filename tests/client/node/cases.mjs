@@ -169,27 +169,22 @@ test("a server that asks to wait beyond the deadline ends the job", async (t) =>
 
 test("one string is no list of addresses", () => assert.throws(() => new TravelOptimizer("127.0.0.1:50051"), TypeError));
 
-const freePort = () => new Promise((resolve) => {
-  const server = createServer().listen(0, "127.0.0.1", () => {
-    const { port } = server.address();
-    server.close(() => resolve(port));
-  });
-});
-
-// A real program on free ports; `address` speaks gRPC. The client waits until it is up.
+// A real program on free ports, which it says once it is up; `address` speaks gRPC.
 async function program(t, variable, ...flags) {
-  const address = `127.0.0.1:${await freePort()}`, operators = `127.0.0.1:${await freePort()}`;
-  const process_ = spawn(process.env[variable], [`--listen=${address}`, `--metrics_listen=${operators}`, ...flags], { stdio: "ignore" });
+  const process_ = spawn(process.env[variable], ["--listen=127.0.0.1:0", "--metrics_listen=127.0.0.1:0", ...flags],
+    { stdio: ["ignore", "pipe", "ignore"] });
   t.after(() => process_.kill("SIGKILL"));
-  const ended = () => process_.exitCode ?? process_.signalCode;
-  const metrics = async () => {  // of several programs some may be up before others
-    for (;;) {
-      const told = await fetch(`http://${operators}/metrics`).catch((error) => { if (ended() !== null) throw error; });
-      if (told) return told.text();
-      await sleep(20);
-    }
+  let said = "";
+  await new Promise((resolve, reject) => {
+    process_.once("exit", () => reject(new Error(`${variable} has ended: ${said}`)));
+    process_.stdout.on("data", (text) => { if (/^metrics .*\n/m.test(said += text)) resolve(); });
+  });
+  const [port, operators] = said.match(/\d+$/gm).slice(-2);
+  return {
+    address: `127.0.0.1:${port}`,
+    metrics: async () => (await fetch(`http://127.0.0.1:${operators}/metrics`)).text(),
+    kill: () => process_.kill("SIGKILL"),
   };
-  return { address, metrics, kill: () => process_.kill("SIGKILL") };
 }
 
 test("routes come from a real server, for arrays and iterators", async (t) => {

@@ -8,23 +8,24 @@ import threading
 import urllib.request
 
 
-def free_port():
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
-
-
 class Program:
-    """A real program on free ports; `address` speaks gRPC. The client waits until it is up."""
+    """A real program on free ports, which it says once it is up; `address` speaks gRPC."""
 
-    def __init__(self, *command, metrics="127.0.0.1:0"):
-        self.address = f"127.0.0.1:{free_port()}"
-        self._process = subprocess.Popen([*command, f"--listen={self.address}", f"--metrics_listen={metrics}"],
-                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    def __init__(self, *command):
+        self._process = subprocess.Popen([*command, "--listen=127.0.0.1:0", "--metrics_listen=127.0.0.1:0"],
+                                         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        said = [self._process.stdout.readline()]
+        while not said[-1].startswith("metrics"):
+            if not said[-1]:
+                raise OSError(f"{command[0]} has ended")
+            said.append(self._process.stdout.readline())
+        port, self._metrics = (int(line.split()[-1]) for line in said[-2:])
+        self.address = f"127.0.0.1:{port}"
 
     def kill(self):
         self._process.kill()
         self._process.wait()
+        self._process.stdout.close()
 
 
 def Server():
@@ -33,9 +34,7 @@ def Server():
 
 class Gateway(Program):
     def __init__(self, *flags):
-        self._metrics = free_port()
-        super().__init__(os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0", *flags,
-                         metrics=f"127.0.0.1:{self._metrics}")
+        super().__init__(os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0", *flags)
 
     def _told(self):
         with urllib.request.urlopen(f"http://127.0.0.1:{self._metrics}/metrics", timeout=10) as answer:
