@@ -6,6 +6,7 @@ A test of a tool that this machine lacks ends with exit code 77, which CTest sho
 import importlib
 import os
 import pathlib
+import random
 import shutil
 import signal
 import socket
@@ -60,10 +61,15 @@ def binary(name):
 
 
 def free_port():
-    """A port of the loopback interface that nobody listens on now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+    """A port of the loopback interface that nobody listens on now, and no client gets for its end of a connection."""
+    while True:
+        port = random.randrange(10_000, 32_000)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue  # taken
 
 
 def http(url, timeout=5):
