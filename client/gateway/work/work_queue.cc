@@ -146,6 +146,15 @@ bool WorkQueue::MayBegin(const Caller& caller, int64_t& waits_for) const {
   return fits;
 }
 
+WorkQueue::Task WorkQueue::Take(Caller& caller, std::deque<Task>::iterator waiting) {
+  Task task = std::move(*waiting);
+  caller.waiting.erase(waiting);
+  ++caller.running;
+  --waiting_count_;
+  ++running_;
+  return task;
+}
+
 WorkQueue::Caller* WorkQueue::TakeEnded(Task& task) {
   const Budget::Clock::time_point now = Budget::Clock::now();
   if (now - looked_ < kLookEvery) return nullptr;
@@ -153,13 +162,9 @@ WorkQueue::Caller* WorkQueue::TakeEnded(Task& task) {
     const auto ended = std::ranges::find_if(
         caller.waiting, [](const Task& waiting) { return waiting.limit.Ended(); });
     if (ended == caller.waiting.end()) continue;
-    task = std::move(*ended);
+    task = Take(caller, ended);
     task.memory_bytes = 0;
-    caller.waiting.erase(ended);
     if (caller.waiting.empty()) order_.Withdraw(caller);
-    ++caller.running;
-    --waiting_count_;
-    ++running_;
     return &caller;
   }
   looked_ = now;
@@ -175,12 +180,8 @@ WorkQueue::Caller* WorkQueue::TakeNext(Task& task) {
   });
   if (next == nullptr) return nullptr;
   Caller& caller = static_cast<Caller&>(*next);
-  task = std::move(caller.waiting.front());
-  caller.waiting.pop_front();
+  task = Take(caller, caller.waiting.begin());
   if (!caller.waiting.empty()) order_.Wait(caller);
-  ++caller.running;
-  --waiting_count_;
-  ++running_;
   memory_bytes_ += task.memory_bytes;
   task.passes = waits_for > 0 || (memory_short_ && running_ > 1);
   passing_ = passing_ || task.passes;

@@ -106,6 +106,9 @@ class WorkQueue {
   // The next task that may run now, and whose it is; null if there is none.
   Caller* TakeNext(Task& task) TRAVERSE_REQUIRES(mutex_);
   Caller* TakeEnded(Task& task) TRAVERSE_REQUIRES(mutex_);  // the same, of those past their limit
+
+  // The task of `caller` at `waiting`, which from now on is under way.
+  Task Take(Caller& caller, std::deque<Task>::iterator waiting) TRAVERSE_REQUIRES(mutex_);
   bool MayBegin(const Caller& caller, int64_t& waits_for) const TRAVERSE_REQUIRES(mutex_);
   void Done(const std::string& name, Caller& caller, double seconds) TRAVERSE_REQUIRES(mutex_);
 
