@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import tempfile
+import time
 
 TESTS = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SAMPLE = os.path.join(os.path.dirname(TESTS), "deploy", "samples", "clusters13.gcode")
@@ -46,6 +47,14 @@ def square_wall(first):
     out = ["M83", ";LAYER_CHANGE", "G1 Z.2 F9000", "G1 E-1 F2100", "G1 X{} Y{} F9000".format(*corners[0]), "G1 E1 F2100",
            ";TYPE:External perimeter", "G1 F1200"]
     return "\n".join(out + ["G1 X{} Y{} E.4".format(*corner) for corner in corners[1:]] + [""]).encode()
+
+
+def until(holds, seconds=60):
+    """Whether `holds` within that time."""
+    end = time.time() + seconds
+    while not holds() and time.time() < end:
+        time.sleep(0.02)
+    return holds()
 
 
 class Gateway:

@@ -12,7 +12,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import ENDLESS, TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall
+from gateway_process import ENDLESS, TESTS, Gateway, endless_infill, lines_of_infill, optimised_by_command, square_wall, until
 
 sys.path.append(os.path.join(TESTS, "chaos"))
 from http2_client import GCODE_SERVICE, Connection, Window, field, message
@@ -238,9 +238,7 @@ class Calls(OnGateway):
         self.assertIn(raised.exception.code(), (grpc.StatusCode.FAILED_PRECONDITION, grpc.StatusCode.DEADLINE_EXCEEDED))
 
     def await_metric(self, name, value):
-        end = time.time() + 60
-        while self.gateway.metric(name) != value and time.time() < end:
-            time.sleep(0.02)
+        until(lambda: self.gateway.metric(name) == value)
         self.assertEqual(self.gateway.metric(name), value)
 
     def test_cancelling_ends_the_work(self):

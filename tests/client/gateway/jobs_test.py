@@ -11,21 +11,13 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import ENDLESS, TESTS, Gateway, detail, endless_infill, form, lines_of_infill, optimised_by_command
+from gateway_process import ENDLESS, TESTS, Gateway, detail, endless_infill, form, lines_of_infill, optimised_by_command, until
 
 sys.path.append(os.path.join(TESTS, "chaos"))
 from http2_client import GCODE_SERVICE, Connection, field, message
 
 PART = lines_of_infill(3)
 LONG = lines_of_infill(1500)
-
-
-def until(holds, seconds=60):
-    """Whether `holds` within that time."""
-    end = time.time() + seconds
-    while not holds() and time.time() < end:
-        time.sleep(0.02)
-    return holds()
 
 
 class Stream:
