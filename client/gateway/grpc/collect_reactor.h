@@ -42,9 +42,8 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   CollectReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
                  const std::string& method, FileUse use, Take take, Check check, Work work)
       : core_(core),
-        live_(live),
         context_(context),
-        call_(core, context, method),
+        call_(core, live, context, method),
         use_(use),
         take_(std::move(take)),
         check_(std::move(check)),
@@ -67,19 +66,16 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
 
   void OnCancel() override { stop_.request_stop(); }
 
-  void OnDone() override {
-    live_.Rests(&context_);
-    delete this;
-  }
+  void OnDone() override { delete this; }
 
  private:
   void Read() {
-    live_.Waits(&context_, call_.peer());
+    call_.Waits();
     this->StartRead(&request_);
   }
 
   void Submit() {
-    live_.Rests(&context_);
+    call_.Rests();
     call_.OnAllCame();
     if (absl::Status status = check_(collected_); !status.ok()) return End(status);
     std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
@@ -93,15 +89,12 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
         use_);
   }
 
-  // An answer, too, waits until the client lets it in.
   void End(const absl::Status& status) {
     collected_ = {};
-    live_.Waits(&context_, call_.peer());
     this->Finish(call_.End(status));
   }
 
   Core& core_;
-  LiveCalls& live_;
   grpc::CallbackServerContext& context_;
   FileCall call_;
   const FileUse use_;

@@ -20,9 +20,13 @@ constexpr absl::Duration kMargin = absl::Milliseconds(300);
 
 }  // namespace
 
-FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method,
-                   Brings brings)
-    : core_(core), info_(ReadCallInfo(context, method)), began_(absl::Now()) {
+FileCall::FileCall(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
+                   const std::string& method, Brings brings)
+    : core_(core),
+      live_(live),
+      context_(context),
+      info_(ReadCallInfo(context, method)),
+      began_(absl::Now()) {
   if (info_.deadline) {
     deadline_ = began_ + absl::FromChrono(*info_.deadline - Budget::Clock::now());
   }
@@ -73,6 +77,7 @@ grpc::Status FileCall::End(const absl::Status& status) {
                              absl::StatusCodeToString(told.code()),
                              absl::ToDoubleSeconds(absl::Now() - began_));
   ticket_ = nullptr;
+  Waits();
   return ToGrpcStatus(told);
 }
 

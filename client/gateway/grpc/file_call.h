@@ -1,5 +1,5 @@
-// What the calls of GcodeService share: who calls, a place in the queue, files in the spool, one
-// Finish.
+// What the calls of GcodeService share: who calls, a place in the queue, files in the spool, how
+// long to wait for the client, one Finish.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_
 #define TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_
@@ -15,6 +15,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "client/gateway/core.h"
+#include "client/gateway/grpc/live_calls.h"
 #include "server/net/connection_job.h"
 #include "server/rpc/call_info.h"
 
@@ -23,12 +24,16 @@ namespace traverse::gateway {
 // What a call brings. Only one with a file takes a place in the queue.
 enum class Brings { kFile, kQuestion };
 
-// The first steps of a call. Not thread-safe.
+// A part of the call's reactor, which lives as long as the call. Not thread-safe, but for Waits and
+// Rests.
 class FileCall {
  public:
   // `method`: without the service's name.
-  FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method,
-           Brings brings = Brings::kFile);
+  FileCall(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
+           const std::string& method, Brings brings = Brings::kFile);
+  ~FileCall() { Rests(); }
+  FileCall(const FileCall&) = delete;
+  FileCall& operator=(const FileCall&) = delete;
 
   // Whether it may go on: the caller is known and has what he needs. Errors are for the client.
   const absl::Status& status() const { return status_; }
@@ -51,11 +56,17 @@ class FileCall {
   // Appends to `file`, which it creates if null. ResourceExhausted, OutOfRange.
   absl::Status Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const;
 
-  // The status for the client. Counts the call.
+  // From now on the call waits for its client, or no longer; see LiveCalls.
+  void Waits() { live_.Waits(&context_, info_.peer); }
+  void Rests() { live_.Rests(&context_); }
+
+  // The status for the client. Counts the call. An answer, too, waits until the client lets it in.
   grpc::Status End(const absl::Status& status);
 
  private:
   Core& core_;
+  LiveCalls& live_;
+  grpc::CallbackServerContext& context_;
   CallInfo info_;
   const absl::Time began_;
   absl::Time deadline_ = absl::InfiniteFuture();

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "client/gateway/api/rewrite_options.h"
 #include "client/gateway/grpc/collect_reactor.h"
@@ -12,24 +13,22 @@
 namespace traverse::gateway {
 namespace {
 
-// Sends the answer to a question. It waits until the client lets it in. Deletes itself.
-class AnswerReactor : public grpc::ServerUnaryReactor {
+// A call of one message whose answer is at hand. Deletes itself.
+class QuestionReactor : public grpc::ServerUnaryReactor {
  public:
-  AnswerReactor(LiveCalls& live, grpc::CallbackServerContext& context, const std::string& peer,
-                const grpc::Status& status)
-      : live_(live), context_(context) {
-    live_.Waits(&context_, peer);
-    Finish(status);
+  // `answer` makes the answer to a caller who may ask.
+  using Answer = absl::FunctionRef<absl::Status(const std::string& caller)>;
+  QuestionReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
+                  const std::string& method, Answer answer)
+      : call_(core, live, context, method, Brings::kQuestion) {
+    const absl::Status& may = call_.status();
+    Finish(call_.End(may.ok() ? answer(call_.caller()) : may));
   }
 
-  void OnDone() override {
-    live_.Rests(&context_);
-    delete this;
-  }
+  void OnDone() override { delete this; }
 
  private:
-  LiveCalls& live_;
-  grpc::CallbackServerContext& context_;
+  FileCall call_;
 };
 
 absl::Status TakeInspect(const v1::InspectRequest& request, const FileCall& call,
@@ -112,14 +111,12 @@ grpc::ServerReadReactor<v1::CreateJobRequest>* GcodeGrpcService::CreateJob(
 grpc::ServerUnaryReactor* GcodeGrpcService::GetJob(grpc::CallbackServerContext* context,
                                                    const v1::GetJobRequest* request,
                                                    v1::GetJobResponse* response) {
-  FileCall call(core_, *context, "GetJob", Brings::kQuestion);
-  absl::Status status = call.status();
-  if (status.ok()) {
-    const absl::StatusOr<std::shared_ptr<Job>> job = core_.jobs->Find(request->id(), call.caller());
-    status = job.status();
+  const auto answer = [&](const std::string& caller) {
+    const absl::StatusOr<std::shared_ptr<Job>> job = core_.jobs->Find(request->id(), caller);
     if (job.ok()) *response->mutable_job() = (*job)->Now();
-  }
-  return new AnswerReactor(live_, *context, call.peer(), call.End(status));
+    return job.status();
+  };
+  return new QuestionReactor(core_, live_, *context, "GetJob", answer);
 }
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* GcodeGrpcService::WatchJob(
@@ -135,10 +132,10 @@ grpc::ServerWriteReactor<v1::ReadJobResponse>* GcodeGrpcService::ReadJob(
 grpc::ServerUnaryReactor* GcodeGrpcService::CancelJob(grpc::CallbackServerContext* context,
                                                       const v1::CancelJobRequest* request,
                                                       v1::CancelJobResponse*) {
-  FileCall call(core_, *context, "CancelJob", Brings::kQuestion);
-  absl::Status status = call.status();
-  if (status.ok()) status = core_.jobs->Cancel(request->id(), call.caller());
-  return new AnswerReactor(live_, *context, call.peer(), call.End(status));
+  const auto answer = [&](const std::string& caller) {
+    return core_.jobs->Cancel(request->id(), caller);
+  };
+  return new QuestionReactor(core_, live_, *context, "CancelJob", answer);
 }
 
 }  // namespace traverse::gateway

@@ -30,11 +30,7 @@ std::string StableBytes(const google::protobuf::Message& message) {
 CreateJobReactor::CreateJobReactor(Core& core, LiveCalls& live,
                                    grpc::CallbackServerContext& context,
                                    v1::CreateJobResponse& response)
-    : core_(core),
-      live_(live),
-      context_(context),
-      response_(response),
-      call_(core, context, "CreateJob") {
+    : core_(core), context_(context), response_(response), call_(core, live, context, "CreateJob") {
   if (call_.status().ok()) {
     Read();
   } else {
@@ -43,7 +39,7 @@ CreateJobReactor::CreateJobReactor(Core& core, LiveCalls& live,
 }
 
 void CreateJobReactor::Read() {
-  live_.Waits(&context_, call_.peer());
+  call_.Waits();
   StartRead(&request_);
 }
 
@@ -116,21 +112,16 @@ absl::Status CreateJobReactor::Create() {
   return job.status();
 }
 
-// An answer, too, waits until the client lets it in.
 void CreateJobReactor::End(const absl::Status& status) {
   upload_ = nullptr;
-  live_.Waits(&context_, call_.peer());
   Finish(call_.End(status));
 }
 
-void CreateJobReactor::OnDone() {
-  live_.Rests(&context_);
-  delete this;
-}
+void CreateJobReactor::OnDone() { delete this; }
 
 WatchJobReactor::WatchJobReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
                                  const v1::WatchJobRequest& request)
-    : live_(live), context_(context), call_(core, context, "WatchJob", Brings::kQuestion) {
+    : call_(core, live, context, "WatchJob", Brings::kQuestion) {
   if (absl::Status status = Follow(core, request); !status.ok()) End(status);
 }
 
@@ -161,7 +152,7 @@ void WatchJobReactor::Next() {
   if (news_) {
     *response_.mutable_job() = *std::exchange(news_, std::nullopt);
     writing_ = true;
-    live_.Waits(&context_, call_.peer());
+    call_.Waits();
     StartWrite(&response_);
     return;
   }
@@ -171,7 +162,7 @@ void WatchJobReactor::Next() {
 }
 
 void WatchJobReactor::OnWriteDone(bool ok) {
-  live_.Rests(&context_);
+  call_.Rests();
   MutexLock lock(mutex_);
   writing_ = false;
   if (!ok) {
@@ -184,7 +175,6 @@ void WatchJobReactor::OnWriteDone(bool ok) {
 void WatchJobReactor::OnCancel() { End(absl::CancelledError("cancelled")); }
 
 void WatchJobReactor::OnDone() {
-  live_.Rests(&context_);
   if (job_ != nullptr) job_->Unfollow(reader_);
   // The caller of Finish may still hold the mutex.
   { MutexLock lock(mutex_); }
@@ -193,7 +183,7 @@ void WatchJobReactor::OnDone() {
 
 ReadJobReactor::ReadJobReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
                                const v1::ReadJobRequest& request)
-    : live_(live), context_(context), call_(core, context, "ReadJob", Brings::kQuestion) {
+    : call_(core, live, context, "ReadJob", Brings::kQuestion) {
   if (absl::Status status = Open(core, request); status.ok()) {
     Next();
   } else {
@@ -223,7 +213,7 @@ void ReadJobReactor::Next() {
     if (fault.ok()) file_->NoteSentToEnd();
     return End(fault);
   }
-  live_.Waits(&context_, call_.peer());
+  call_.Waits();
   StartWrite(&response_);
 }
 
@@ -233,14 +223,10 @@ void ReadJobReactor::OnWriteDone(bool ok) {
 }
 
 void ReadJobReactor::End(const absl::Status& status) {
-  live_.Rests(&context_);
   file_ = nullptr;
   Finish(call_.End(status));
 }
 
-void ReadJobReactor::OnDone() {
-  live_.Rests(&context_);
-  delete this;
-}
+void ReadJobReactor::OnDone() { delete this; }
 
 }  // namespace traverse::gateway

@@ -34,7 +34,6 @@ class CreateJobReactor : public grpc::ServerReadReactor<v1::CreateJobRequest> {
   void End(const absl::Status& status);
 
   Core& core_;
-  LiveCalls& live_;
   grpc::CallbackServerContext& context_;
   v1::CreateJobResponse& response_;
   FileCall call_;
@@ -60,8 +59,6 @@ class WatchJobReactor : public grpc::ServerWriteReactor<v1::WatchJobResponse> {
   // Starts the next write, or finishes, if it is time.
   void Next() TRAVERSE_REQUIRES(mutex_);
 
-  LiveCalls& live_;
-  grpc::CallbackServerContext& context_;
   FileCall call_;
   std::shared_ptr<Job> job_;
   uint64_t reader_ = 0;
@@ -88,8 +85,6 @@ class ReadJobReactor : public grpc::ServerWriteReactor<v1::ReadJobResponse> {
   void Next();
   void End(const absl::Status& status);
 
-  LiveCalls& live_;
-  grpc::CallbackServerContext& context_;
   FileCall call_;
   std::shared_ptr<const SpoolFile> file_;
   uint64_t sent_ = 0;

@@ -10,7 +10,7 @@
 namespace traverse::gateway {
 
 RewriteReactor::RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context)
-    : core_(core), live_(live), context_(context), call_(core, context, "Rewrite") {
+    : core_(core), context_(context), call_(core, live, context, "Rewrite") {
   if (!call_.status().ok()) {
     MutexLock lock(mutex_);
     End(call_.status());
@@ -20,7 +20,7 @@ RewriteReactor::RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServer
 }
 
 void RewriteReactor::Read() {
-  live_.Waits(&context_, call_.peer());
+  call_.Waits();
   StartRead(&request_);
 }
 
@@ -54,7 +54,7 @@ absl::Status RewriteReactor::TakeRequest() {
 }
 
 void RewriteReactor::Submit() {
-  live_.Rests(&context_);
+  call_.Rests();
   call_.OnAllCame();
   if (upload_ == nullptr) {
     MutexLock lock(mutex_);
@@ -124,14 +124,13 @@ void RewriteReactor::Next() {
   if (writing_ || finished_) return;
   if (!end_ && NextPiece()) {
     writing_ = true;
-    live_.Waits(&context_, call_.peer());
+    call_.Waits();
     StartWrite(&response_);
     return;
   }
   if (!end_ && summary_sent_) end_ = absl::OkStatus();
   if (!end_) return;
   finished_ = true;
-  live_.Rests(&context_);
   made_.reset();
   Finish(call_.End(*end_));
 }
@@ -139,7 +138,7 @@ void RewriteReactor::Next() {
 void RewriteReactor::OnWriteDone(bool ok) {
   MutexLock lock(mutex_);
   // What is made is sent without a pause, and its time is counted as a whole.
-  if (!made_) live_.Rests(&context_);
+  if (!made_) call_.Rests();
   writing_ = false;
   if (ok || end_) return Next();
   stop_.request_stop();
@@ -154,7 +153,6 @@ void RewriteReactor::OnCancel() {
 }
 
 void RewriteReactor::OnDone() {
-  live_.Rests(&context_);
   // The caller of Finish may still hold the mutex.
   { MutexLock lock(mutex_); }
   delete this;

@@ -41,7 +41,6 @@ class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::Re
   bool NextPiece() TRAVERSE_REQUIRES(mutex_);
 
   Core& core_;
-  LiveCalls& live_;
   grpc::CallbackServerContext& context_;
   FileCall call_;
   v1::RewriteRequest request_;
